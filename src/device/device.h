@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "frame/snapshot.h"
+
+namespace kadr {
+
+/// Samples [first_sample, first_sample + sample_count) of every pixel.
+struct Pass {
+    int first_sample = 0, sample_count = 1;
+    const std::atomic<bool>* cancel = nullptr;         ///< set: return early (film is then incomplete)
+    std::function<void(double fraction)> progress;     ///< 0..1, called from any thread, rarely
+};
+
+/// Counters since the last set_frame, but for the times of load.
+struct DeviceStatistics {
+    std::uint64_t pixel_samples = 0, rays = 0, dropped_samples = 0;
+    double load_s = 0, set_frame_s = 0, render_s = 0;
+    std::uint64_t flattened_triangles = 0, instances = 0, moving_instances = 0;
+};
+
+/// A renderer on some hardware: three calls and no back-end type across them.
+class Device {
+public:
+    virtual ~Device() = default;
+    virtual std::string name() const = 0;                       ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
+    virtual void load(const Scene& scene) = 0;                  ///< once a shot; the scene outlives the device
+    virtual void set_frame(const SceneSnapshot& snapshot) = 0;
+    virtual void render(const Pass& pass, Film& film) = 0;      ///< adds to the film
+    virtual DeviceStatistics statistics() const = 0;
+};
+
+struct DeviceRequest {
+    std::string name = "auto";    ///< auto | cpu | hiprt
+    int threads = 0;              ///< 0: as many as the machine gives
+    int width = 0;                ///< lanes; 0: KADR_WIDTH, else what the processor has
+};
+
+struct DeviceChoice {
+    std::unique_ptr<Device> device;
+    std::string why;              ///< "no GPU back end in this build"
+};
+
+/// One line of `kadr devices`.
+struct DeviceReport {
+    std::string name;             ///< "cpu", "hiprt"
+    std::string description;      ///< hardware
+    bool usable = false;
+    std::string reason;           ///< why not, when not
+};
+
+/// @throws InputError  for an unknown name or a device that is not usable, with the reason
+DeviceChoice make_device(const DeviceRequest& request);
+std::vector<DeviceReport> list_devices();
+
+}  // namespace kadr

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kadr {
+
+/// A developed image: interleaved float channels, row 0 on top.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::string> channels;   ///< "R", "G", "B", "A", "albedo.R", "normal.X", "depth.Z", "samples.N", ...
+    std::vector<float> pixels;           ///< [y][x][channel]
+    float at(int x, int y, int channel) const { return pixels[(static_cast<std::size_t>(y) * width + x) * channels.size() + channel]; }
+};
+
+/// Which data layers are kept beside the beauty.
+struct FilmLayers {
+    bool albedo = false, normal = false, depth = false, motion = false, samples = false, error = false;
+    bool operator==(const FilmLayers&) const = default;
+    bool any_surface() const { return albedo || normal || depth || motion; }
+};
+
+/// Sums over the samples of every pixel. Pixels are owned by one tile at a time and summed in sample order, so the
+/// result does not depend on threads.
+class Film {
+public:
+    Film(int width, int height, FilmLayers layers);
+    void clear();
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    const FilmLayers& layers() const { return layers_; }
+
+    struct Beauty { float r = 0, g = 0, b = 0, alpha = 0; };
+    struct Surface { float albedo[3] = {}, normal[3] = {}; float depth = 0; float depth_weight = 0; float motion[2] = {}; };
+
+    Beauty& beauty(int x, int y) { return beauty_[index(x, y)]; }
+    std::uint32_t& samples(int x, int y) { return samples_[index(x, y)]; }
+    Surface& surface(int x, int y) { return surface_[index(x, y)]; }     ///< only when layers().any_surface()
+    /// Sums of the luminance of groups of samples, for the error layer: sum and sum of squares over groups, in double.
+    struct Groups { double sum = 0, sum_of_squares = 0; std::uint32_t count = 0; };
+    Groups& groups(int x, int y) { return groups_[index(x, y)]; }        ///< only when layers().error
+
+    /// Linear radiance (premultiplied alpha) and the layers, sums over counts.
+    Image develop() const;
+
+private:
+    std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
+    int width_, height_;
+    FilmLayers layers_;
+    std::vector<Beauty> beauty_;
+    std::vector<std::uint32_t> samples_;
+    std::vector<Surface> surface_;
+    std::vector<Groups> groups_;
+};
+
+}  // namespace kadr

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "frame/frame_state.h"
+#include "kernels/scene/motion_types.h"
+#include "kernels/scene/scene_types.h"
+
+namespace kadr {
+
+/// Transforms of all instances over the shutter, in HIPRT's own layout: frames evenly spaced on [0, 1], relative to the
+/// render origin. One type for the whole scene, as HIPRT wants it: SRT, or matrices where anything is sheared.
+struct MotionFrames {
+    enum class Type { srt, matrix } type = Type::srt;
+    std::vector<kernels::TransformHeader> headers;  ///< [instance]
+    std::vector<kernels::FrameSrt> srt;             ///< filled when type is srt
+    std::vector<kernels::FrameMatrix> matrices;     ///< filled when type is matrix
+    /// Whether linearly interpolated matrices (two keys) already meet the motion tolerance; [instance].
+    std::vector<std::uint8_t> linear;
+    double max_error_px = 0;                        ///< largest screen-space deviation from the true path
+};
+
+struct SnapshotInstance {
+    std::uint32_t geometry = 0, material = 0;  ///< indices into Scene
+    std::uint32_t id = 0;                      ///< stable over the shot
+    std::uint32_t mask = 0xffffffffu;
+    bool fixed = false;   ///< the same place in the world in every frame of the shot: a device may flatten it
+    /// world_from_geometry at the shutter's opening, double, absolute; what a flattening device bakes (after
+    /// subtracting the render origin).
+    glm::dmat4 world_from_geometry{1};
+};
+
+/// A light over the shutter: keys evenly spaced on [0, 1]; one when it does not move.
+struct LightKeys {
+    std::uint32_t first = 0, count = 1;        ///< into SceneSnapshot::light_keys
+};
+
+struct EnvironmentSnapshot {
+    kernels::Vec3f radiance{0, 0, 0};          ///< colour * strength, or the factor on the image
+    std::optional<std::filesystem::path> image;
+    float rotate_rad = 0;                      ///< about +y
+    bool visible = true;
+};
+
+/// What any device needs of one frame, or of one part of its shutter, and nothing else: float, relative to the render
+/// origin.
+struct SceneSnapshot {
+    int frame_number = 0;
+    double open_s = 0, close_s = 0;            ///< of this part of the shutter
+    double weight = 1;                         ///< this part's share of the frame's samples; the parts add up to 1
+    glm::dvec3 render_origin{0};
+    std::vector<SnapshotInstance> instances;
+    MotionFrames motion;                       ///< headers parallel to instances
+    std::vector<kernels::CameraKey> camera_keys;
+    kernels::Camera camera{};                  ///< keys pointer is null here; the device points it at its own copy
+    std::vector<LightKeys> lights;
+    std::vector<kernels::Light> light_keys;
+    EnvironmentSnapshot environment;
+    kernels::Settings settings;
+    std::uint64_t geometry_key = 0;            ///< equal keys: instances and motion are those of the previous frame
+};
+
+/// The snapshots of one frame: one, or several where the shutter has to be split.
+/// @throws InputError  where the motion cannot be represented (a zero scale, half a turn between keys)
+std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame);
+
+}  // namespace kadr

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "shot/shot_parser.h"
+
+namespace kadr {
+
+struct RenderOptions {
+    std::filesystem::path shot;
+    ShotOverrides overrides;
+    DeviceRequest device;
+    bool overwrite = false;
+};
+
+/// Seconds of wall time by stage (stages overlap, so they need not add up to the total).
+struct StageTimes { double load = 0, scene = 0, trace = 0, write = 0, encode = 0, total = 0; };
+
+struct FrameReport {
+    int frame = 0;
+    bool reused = false;             ///< complete on disk, made from the same inputs
+    double seconds = 0;
+    std::uint64_t samples = 0, dropped = 0;
+    std::uint64_t clamped = 0;       ///< half-float values above 65504
+    double motion_error_px = 0;
+    std::vector<std::filesystem::path> files;
+    DeviceStatistics device;
+};
+
+struct RenderSummary {
+    int frames = 0, reused = 0;
+    StageTimes times;
+    std::uint64_t pixel_samples = 0;
+    double samples_per_s = 0;
+    std::size_t peak_memory_bytes = 0;
+    std::string device, device_why;
+    std::filesystem::path video;
+    std::vector<Diagnostic> warnings;
+};
+
+/// Who watches: a progress bar, plain lines or JSON lines. Called from the rendering thread, but for frame_progress.
+struct RenderEvents {
+    std::function<void(const Diagnostic&)> warning = [](const Diagnostic&) {};
+    std::function<void(int frame, double fraction, int frames_left)> frame_progress = [](int, double, int) {};
+    std::function<void(const FrameReport&)> frame_done = [](const FrameReport&) {};
+};
+
+/// Renders every frame of the shot, then the video.
+/// @throws InputError, RenderError, Interrupted
+RenderSummary render_shot(const RenderOptions& options, const RenderEvents& events);
+
+struct PreviewOptions {
+    RenderOptions render;
+    std::optional<int> frame;
+    std::optional<double> time_s;
+    std::filesystem::path output;    ///< empty: NAME.FRAME.preview.png in the working folder
+};
+FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events);
+
+/// Everything that can be known before rendering. @return warnings. @throws InputError with all problems
+std::vector<Diagnostic> check_shot(const std::filesystem::path& shot, const ShotOverrides& overrides);
+
+/// Set by SIGINT and SIGTERM; render functions stop at the next opportunity and throw Interrupted.
+std::atomic<bool>& interrupt_requested();
+/// Installs the handlers: the first signal sets the flag, the second ends the process at once.
+void install_interrupt_handlers();
+
+}  // namespace kadr

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "anim/track.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "kernels/scene/scene_types.h"
+
+namespace kadr {
+
+/// One glTF primitive as triangles, in normalised coordinates: mesh position = centre + scale * position, with
+/// positions in [-1, 1]. Node transforms apply to mesh positions, so
+/// world_from_geometry = world_from_node * translate(centre) * scale(scale).
+struct GeometryData {
+    std::string name;                                 ///< "mesh/primitive", for messages
+    std::vector<kernels::Vec3f> positions, normals;   ///< normals empty: flat
+    std::vector<std::uint32_t> indices;               ///< three a triangle
+    std::vector<kernels::Vec4f> tangents;
+    std::array<std::vector<kernels::Vec2f>, 2> uv;
+    std::vector<kernels::Vec4f> colors;
+    glm::dvec3 centre{0};
+    double scale = 1;
+    kernels::Geometry view() const;
+};
+
+struct TextureData {
+    std::string name;
+    std::vector<std::uint8_t> texels;  ///< width * height * 4 channels in `format`
+    int width = 0, height = 0;
+    kernels::TexelFormat format = kernels::TexelFormat::rgba8_srgb;
+    kernels::Wrap wrap_s = kernels::Wrap::repeat, wrap_t = kernels::Wrap::repeat;
+    bool nearest = false;
+    kernels::Texture view() const;
+};
+
+/// KHR_lights_punctual: shines along the node's -z.
+struct SceneLight {
+    std::string name;
+    kernels::LightKind kind = kernels::LightKind::point;
+    glm::dvec3 color{1};
+    double intensity = 1;       ///< lux or candela
+    double range_m = 0;         ///< 0: infinite
+    double inner_rad = 0, outer_rad = 0.7853981633974483;
+};
+
+struct SceneCamera {
+    std::string name;
+    bool orthographic = false;
+    double yfov_rad = 0.8, aspect = 0;   ///< aspect 0: the image's
+    double xmag = 1, ymag = 1;           ///< orthographic half extents, metres
+    double znear = 0, zfar = 0;          ///< zfar 0: infinite
+};
+
+struct MeshPrimitive {
+    int geometry = -1;   ///< index into Scene::geometries
+    int material = -1;   ///< index into Scene::materials (always set: the glTF default material is added)
+};
+
+struct Node {
+    std::string name;            ///< as in the file; may be empty or repeated
+    int parent = -1;
+    std::vector<int> children;   ///< indices into Scene::nodes
+    /// parent_from_node: a fixed matrix, or T, R, S (which clips animate).
+    std::optional<glm::dmat4> matrix;
+    glm::dvec3 translation{0};
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 scale{1};
+    std::vector<MeshPrimitive> primitives;
+    int light = -1, camera = -1; ///< indices into Scene::lights, Scene::cameras
+};
+
+/// One animated node of a clip. Absent tracks leave the node's own value.
+struct NodeChannels {
+    int node = -1;
+    std::optional<Track<glm::dvec3>> translation, scale;
+    std::optional<Track<glm::dquat>> rotation;
+};
+
+struct Clip {
+    std::string name;
+    double begin_s = 0, end_s = 0;
+    std::vector<NodeChannels> channels;
+};
+
+/// The part of a Scene that came from one glTF file of the shot. Ranges are half open.
+struct SceneFile {
+    std::string id;              ///< of the shot's scene entry
+    std::filesystem::path path;
+    Hash content;                ///< of the file and of everything it names
+    std::vector<int> roots;      ///< nodes of the file's default scene
+    int first_node = 0, node_count = 0;
+    int first_clip = 0, clip_count = 0;
+};
+
+/// Everything the glTF files of a shot hold, merged into one index space; built once a shot.
+struct Scene {
+    std::vector<SceneFile> files;        ///< one per scene entry of the shot, in its order
+    std::vector<Node> nodes;             ///< nodes outside the default scenes are present but reached from no root
+    std::vector<GeometryData> geometries;
+    std::vector<kernels::Material> materials;
+    std::vector<std::string> material_names;
+    std::vector<TextureData> textures;   ///< one per (image, colour space, sampler)
+    std::vector<SceneLight> lights;
+    std::vector<SceneCamera> cameras;
+    std::vector<Clip> clips;
+    std::vector<Diagnostic> warnings;
+};
+
+/// What a shot asks for: which file, under which id. `where` is the place in the shot file, for messages.
+struct SceneFileRequest {
+    std::string id;
+    std::filesystem::path path;
+    SourceLocation where;
+};
+
+struct LoadOptions {
+    bool decode_textures = true;   ///< `kadr check` reads image headers alone
+    bool load_geometry = true;     ///< reserved for lazy loading; checks always run
+};
+
+/// Reads glTF files (.gltf, .glb). Two requests for the same file share geometries, materials and textures.
+/// @throws InputError  naming the file and the JSON pointer ("/meshes/0/primitives/1/indices")
+Scene load_scene(const std::vector<SceneFileRequest>& requests, const LoadOptions& options = {});
+
+}  // namespace kadr

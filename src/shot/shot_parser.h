@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "shot/shot.h"
+
+namespace kadr {
+
+/// What the command line lays over the file. The command line wins; its paths are relative to the working folder.
+struct ShotOverrides {
+    std::vector<std::pair<std::string, std::string>> set;  ///< "render.samples" -> "16", values in YAML
+    std::string frames;        ///< "1-24x2,40"; empty: the file's
+    std::string output;        ///< frame pattern
+    std::string video;         ///< file, or "none"
+    int samples = 0;           ///< 0: the file's
+    int width = 0, height = 0; ///< 0: the file's
+};
+
+/// Reads and validates a shot file: every problem at once.
+/// @throws InputError  with all problems, each at its file:line:column with an excerpt
+Shot parse_shot(const std::filesystem::path& path, const ShotOverrides& overrides = {});
+
+/// The same from text; `path` gives the file's name and folder.
+Shot parse_shot_text(std::string_view text, const std::filesystem::path& path, const ShotOverrides& overrides = {});
+
+/// The manual of one key ("render.samples"), of a section, or of the whole format (empty key), from the schema table.
+/// @throws InputError  for an unknown key, with "did you mean"
+std::string describe_schema(std::string_view key);
+
+/// The format as a JSON Schema (draft 2020-12) for editors, from the same table.
+std::string schema_as_json();
+
+}  // namespace kadr
