@@ -1,0 +1,235 @@
+// From a hit (instance, triangle, barycentrics) to a place to shade: position, normals, material.
+#pragma once
+
+#include "kernels/math/wide.h"
+#include "kernels/scene/motion.h"
+#include "kernels/scene/scene_view.h"
+#include "kernels/texture/texture.h"
+
+namespace kadr::kernels {
+
+/// What a tracer reports. `u`, `v` weigh vertices 1 and 2; distance is in units of the (unit) ray direction.
+template <class F>
+struct Hit {
+    Int<F> instance, primitive;
+    F u, v, distance;
+};
+
+/// A shaded point. Normals are unit, in world space and turned to the viewer.
+template <class F>
+struct Interaction {
+    Vec3<F> position;          ///< on the surface
+    Vec3<F> origin;            ///< where rays leave from: off the surface, on the viewer's side
+    Vec3<F> geometric_normal, shading_normal;
+    Vec3<F> base_color, emission;
+    F metallic, roughness;
+    F alpha;                   ///< coverage of a `blend` material; 1 elsewhere
+    Mask<F> unlit;
+};
+
+/// Moves a point off its surface by a few units in the last place of its own coordinates.
+/// Source: Wächter & Binder, "A Fast and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, 2019, ch. 6.
+template <class F>
+SHARED_FN F offset_coordinate(F p, F n) {
+    const Int<F> ulps = truncate(n * F(256.0f));
+    const UInt<F> moved = select(p < F(0.0f), as_uint(p) - UInt<F>(ulps), as_uint(p) + UInt<F>(ulps));
+    return select(abs(p) < F(1.0f / 32), p + n * F(1.0f / 65536), as_float(moved));
+}
+template <class F>
+SHARED_FN Vec3<F> offset_origin(Vec3<F> p, Vec3<F> n) {
+    return {offset_coordinate(p.x, n.x), offset_coordinate(p.y, n.y), offset_coordinate(p.z, n.z)};
+}
+
+/// A 3x4 matrix in every lane.
+template <class F>
+struct AffineLanes {
+    F m[3][4];
+    SHARED_FN Vec3<F> point(Vec3<F> p) const {
+        return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3], m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+                m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
+    }
+    SHARED_FN Vec3<F> vector(Vec3<F> p) const {
+        return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z, m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z,
+                m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z};
+    }
+    SHARED_FN Vec3<F> row(int i) const { return {m[i][0], m[i][1], m[i][2]}; }
+    /// 1, or -1 where the matrix mirrors.
+    SHARED_FN F handedness() const { return copy_sign(F(1.0f), dot(cross(row(0), row(1)), row(2))); }
+    /// Unnormalised. By the cofactors, which are the inverse transpose times the determinant: right for every matrix that
+    /// has an inverse, sheared ones included.
+    SHARED_FN Vec3<F> normal(Vec3<F> n) const {
+        const Vec3<F> r0 = row(0), r1 = row(1), r2 = row(2);
+        return Vec3<F>{dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n)} * handedness();
+    }
+};
+
+template <class F>
+SHARED_FN void set_vec(Vec3<F>& v, int i, Vec3f x) {
+    set_lane(v.x, i, x.x);
+    set_lane(v.y, i, x.y);
+    set_lane(v.z, i, x.z);
+}
+template <class F>
+SHARED_FN void set_vec(Vec2<F>& v, int i, Vec2f x) {
+    set_lane(v.x, i, x.x);
+    set_lane(v.y, i, x.y);
+}
+template <class F>
+SHARED_FN void set_vec(Vec4<F>& v, int i, Vec4f x) {
+    set_lane(v.x, i, x.x);
+    set_lane(v.y, i, x.y);
+    set_lane(v.z, i, x.z);
+    set_lane(v.w, i, x.w);
+}
+
+SHARED_FN Vec3f barycentric(Vec3f a, Vec3f b, Vec3f c, float u, float v) { return a * (1.0f - u - v) + b * u + c * v; }
+
+/// Vertex attributes that only textured surfaces need.
+template <class F>
+struct SurfaceMaps {
+    Vec2<F> uv[2];
+    Vec4<F> tangent;
+    Vec4<F> color;
+};
+
+/// Fetches lane by lane (every lane has its own mesh), then computes in all lanes at once.
+/// @tparam R    set of requirement:: bits
+/// @param wo    unit vector back along the ray
+template <class F, unsigned R>
+SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo, Mask<F> active) {
+    constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0;
+    Vec3<F> p0{}, p1{}, p2{}, n0{}, n1{}, n2{};
+    Interaction<F> it{};
+    AffineLanes<F> world_from_object{};
+    SurfaceMaps<F> maps{};
+    Vec3<F> flat_lane{};  // x: 1 where the mesh has no normals
+    it.alpha = F(1.0f);
+    it.unlit = Mask<F>(false);
+    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
+        const int i = __builtin_ctz(todo);
+        const Instance& instance = scene.instances[lane(hit.instance, i)];
+        const Geometry& g = scene.geometries[instance.geometry];
+        const Material& m = scene.materials[instance.material];
+        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(lane(hit.primitive, i));
+        const unsigned a = index[0], b = index[1], c = index[2];
+        set_vec(p0, i, g.positions[a]);
+        set_vec(p1, i, g.positions[b]);
+        set_vec(p2, i, g.positions[c]);
+        if (g.normals) {
+            set_vec(n0, i, g.normals[a]);
+            set_vec(n1, i, g.normals[b]);
+            set_vec(n2, i, g.normals[c]);
+        } else {
+            set_lane(flat_lane.x, i, 1.0f);
+        }
+        set_vec(it.base_color, i, m.base_color);
+        set_vec(it.emission, i, m.emission);
+        set_lane(it.metallic, i, m.metallic);
+        set_lane(it.roughness, i, m.roughness);
+        if constexpr (kTransforms) {
+            const Affine at = transform_at(scene, static_cast<unsigned>(lane(hit.instance, i)), lane(time, i));
+            for (int r = 0; r < 3; ++r)
+                for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
+        }
+        if constexpr (kMaps) {
+            const float u = lane(hit.u, i), v = lane(hit.v, i), w = 1.0f - u - v;
+            for (int s = 0; s < 2; ++s)
+                if (g.uv[s]) set_vec(maps.uv[s], i, g.uv[s][a] * w + g.uv[s][b] * u + g.uv[s][c] * v);
+            if (g.tangents) {
+                const Vec4f ta = g.tangents[a], tb = g.tangents[b], tc = g.tangents[c];
+                set_vec(maps.tangent, i, Vec4f{ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v, ta.w});
+            }
+            Vec4f color{1, 1, 1, 1};
+            if (g.colors) {
+                const Vec4f ca = g.colors[a], cb = g.colors[b], cc = g.colors[c];
+                color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v, ca.w * w + cb.w * u + cc.w * v};
+            }
+            set_vec(maps.color, i, color);
+            set_lane(it.unlit, i, m.unlit);
+        }
+    }
+    // Geometric normal and hit point from barycentrics, never from origin + t * direction (see docs on precision).
+    const Vec3<F> object_normal = normalize(cross(p1 - p0, p2 - p0));
+    const F w = F(1.0f) - hit.u - hit.v;
+    const Vec3<F> object_point = p0 * w + p1 * hit.u + p2 * hit.v;
+    Vec3<F> smooth = n0 * w + n1 * hit.u + n2 * hit.v;
+    const Mask<F> is_flat = (flat_lane.x > F(0.0f)) | !(dot(smooth, smooth) > F(1e-20f));
+    smooth = select(is_flat, object_normal, smooth);
+    if constexpr (kTransforms) {
+        it.geometric_normal = normalize(world_from_object.normal(object_normal));
+        it.shading_normal = normalize(world_from_object.normal(smooth));
+        it.position = world_from_object.point(object_point);
+    } else {
+        it.geometric_normal = object_normal;
+        it.shading_normal = normalize(smooth);
+        it.position = object_point;
+    }
+    const F side = copy_sign(F(1.0f), dot(it.geometric_normal, wo));
+    if constexpr (kTransforms) {
+        it.origin = world_from_object.point(offset_origin(object_point, object_normal * side));
+    } else {
+        it.origin = offset_origin(object_point, object_normal * side);
+    }
+    it.geometric_normal = it.geometric_normal * side;
+    // The shading normal follows the geometric one to the viewer's side, also where mirrored transforms flipped one of them.
+    it.shading_normal = it.shading_normal * copy_sign(F(1.0f), dot(it.shading_normal, it.geometric_normal));
+    if constexpr (kMaps) {
+        if constexpr (kTransforms) {
+            const Vec3<F> t = world_from_object.vector({maps.tangent.x, maps.tangent.y, maps.tangent.z});
+            maps.tangent = {t.x, t.y, t.z, maps.tangent.w * world_from_object.handedness()};
+        }
+        apply_maps(scene, hit, maps, side, active, it);
+    }
+    // A shading normal that points away from the viewer cannot be shaded: bend it to just inside the visible side.
+    const F facing = dot(it.shading_normal, wo);
+    const F kLeast = F(1e-3f);
+    it.shading_normal = select(facing < kLeast, normalize(it.shading_normal + wo * (kLeast - facing)), it.shading_normal);
+    return it;
+}
+
+/// Textures, lane by lane: base colour, metallic-roughness, emission and the normal map.
+template <class F>
+SHARED_FN void apply_maps(const SceneView& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side, Mask<F> active, Interaction<F>& it) {
+    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
+        const int i = __builtin_ctz(todo);
+        const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
+        const Vec2f uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)}, uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
+        const Vec4f vertex_color{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i), lane(maps.color.w, i)};
+        Vec3f base = m.base_color * Vec3f{vertex_color.x, vertex_color.y, vertex_color.z};
+        float alpha = m.alpha * vertex_color.w;
+        if (m.base_color_texture.texture >= 0) {
+            const Vec4f t = sample_texture<float>(scene.textures, m.base_color_texture.texture, apply_transform(m.base_color_texture, uv0, uv1), true);
+            base = base * Vec3f{t.x, t.y, t.z};
+            alpha *= t.w;
+        }
+        set_vec(it.base_color, i, base);
+        set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : 1.0f);
+        if (m.metallic_roughness_texture.texture >= 0) {
+            const Vec4f t = sample_texture<float>(scene.textures, m.metallic_roughness_texture.texture, apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
+            set_lane(it.roughness, i, m.roughness * t.y);
+            set_lane(it.metallic, i, m.metallic * t.z);
+        }
+        if (m.emissive_texture.texture >= 0) {
+            const Vec4f t = sample_texture<float>(scene.textures, m.emissive_texture.texture, apply_transform(m.emissive_texture, uv0, uv1), true);
+            set_vec(it.emission, i, m.emission * Vec3f{t.x, t.y, t.z});
+        }
+        if (m.unlit) set_vec(it.emission, i, base);
+        const Vec3f tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
+        if (m.normal_texture.texture >= 0 && dot(tangent, tangent) > 0) {
+            const Vec4f t = sample_texture<float>(scene.textures, m.normal_texture.texture, apply_transform(m.normal_texture, uv0, uv1), true);
+            const Vec3f local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
+            // The tangent frame belongs to the front side; seen from behind, its normal points the other way.
+            const float s = lane(side, i);
+            const Vec3f n = Vec3f{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
+            const Vec3f flat = tangent - n * dot(tangent, n);
+            if (dot(flat, flat) > 1e-20f) {
+                const Vec3f tu = normalize(flat);
+                const Vec3f tv = cross(n * s, tu) * lane(maps.tangent.w, i);
+                const Vec3f bent = tu * local.x * s + tv * local.y * s + n * local.z;
+                if (dot(bent, bent) > 1e-20f) set_vec(it.shading_normal, i, normalize(bent));
+            }
+        }
+    }
+}
+
+}  // namespace kadr::kernels

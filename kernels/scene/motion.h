@@ -1,0 +1,83 @@
+// World transforms of moving instances at one time of the shutter; lane by lane, since every lane has its own instance.
+#pragma once
+
+#include "kernels/math/wide.h"
+#include "kernels/scene/scene_view.h"
+
+namespace kadr::kernels {
+
+/// Weights of slerp between unit quaternions with cosine c >= 0 at t, accurate to 1e-6 for steps of up to 90 degrees.
+SHARED_FN void slerp_weights(float c, float t, float& w0, float& w1) {
+    const float angle = acos(min(c, 1.0f));
+    if (angle < 1e-3f) {  // sin(x) = x to the last bit but one
+        w0 = 1.0f - t;
+        w1 = t;
+        return;
+    }
+    float s0, s1, s, unused;
+    sincos_2pi((1.0f - t) * angle * (0.5f * kInvPi), s0, unused);
+    sincos_2pi(t * angle * (0.5f * kInvPi), s1, unused);
+    sincos_2pi(angle * (0.5f * kInvPi), s, unused);
+    w0 = s0 / s;
+    w1 = s1 / s;
+}
+
+/// translation * rotation * shear * scale as a matrix.
+SHARED_FN Affine compose(const TransformKey& k) {
+    const float x = k.rotation[0], y = k.rotation[1], z = k.rotation[2], w = k.rotation[3];
+    const float r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                           {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                           {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+    Affine a;
+    for (int i = 0; i < 3; ++i) {
+        a.m[i][0] = r[i][0] * k.scale[0];
+        a.m[i][1] = r[i][0] * k.shear[0] + r[i][1] * k.scale[1];
+        a.m[i][2] = r[i][0] * k.shear[1] + r[i][1] * k.shear[2] + r[i][2] * k.scale[2];
+        a.m[i][3] = k.translation[i];
+    }
+    return a;
+}
+
+/// The transform between two keys.
+SHARED_FN TransformKey interpolate(const TransformKey& a, const TransformKey& b, float t) {
+    TransformKey k;
+    for (int i = 0; i < 3; ++i) {
+        k.translation[i] = lerp(a.translation[i], b.translation[i], t);
+        k.scale[i] = lerp(a.scale[i], b.scale[i], t);
+        k.shear[i] = lerp(a.shear[i], b.shear[i], t);
+    }
+    float c = 0;
+    for (int i = 0; i < 4; ++i) c += a.rotation[i] * b.rotation[i];
+    const float sign = c < 0 ? -1.0f : 1.0f;  // q and -q are the same rotation: take the shorter arc
+    float w0, w1;
+    slerp_weights(abs(c), t, w0, w1);
+    float norm = 0;
+    for (int i = 0; i < 4; ++i) {
+        k.rotation[i] = w0 * a.rotation[i] + sign * w1 * b.rotation[i];
+        norm += k.rotation[i] * k.rotation[i];
+    }
+    norm = 1.0f / sqrt(norm);
+    for (int i = 0; i < 4; ++i) k.rotation[i] *= norm;
+    return k;
+}
+
+/// world_from_object of an instance at a time in [0, 1] of the shutter.
+SHARED_FN Affine transform_at(const SceneView& scene, unsigned instance, float time) {
+    const InstanceMotion& motion = scene.motions[instance];
+    if (motion.kind == InstanceMotion::Kind::still) return scene.matrices[motion.first];
+    if (motion.kind == InstanceMotion::Kind::linear) {
+        const Affine &a = scene.matrices[motion.first], &b = scene.matrices[motion.first + 1];
+        Affine r;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 4; ++j) r.m[i][j] = lerp(a.m[i][j], b.m[i][j], time);
+        return r;
+    }
+    const float position = clamp(time, 0.0f, 1.0f) * static_cast<float>(motion.count - 1);
+    int segment = truncate(position);
+    const int last = static_cast<int>(motion.count) - 2;
+    if (segment > last) segment = last;
+    const TransformKey* keys = scene.keys + motion.first + segment;
+    return compose(interpolate(keys[0], keys[1], position - static_cast<float>(segment)));
+}
+
+}  // namespace kadr::kernels

@@ -1,0 +1,82 @@
+// The scene as the integrators see it, on any device: tables and what the frame adds to them.
+#pragma once
+
+#include "kernels/light/environment.h"
+#include "kernels/math/vec.h"
+#include "kernels/scene/scene_types.h"
+
+namespace kadr::kernels {
+
+/// Row-major 3x4: world_from_object, relative to the render origin.
+struct Affine {
+    float m[3][4];
+};
+
+/// One transform of a moving instance, decomposed: translation * rotation * shear * scale; rotation x y z w.
+/// shear = (xy, xz, yz), the upper triangle over the scale. All instances share one rule: everything is interpolated
+/// linearly but for the rotation, which goes by slerp along the shorter arc.
+struct TransformKey {
+    float translation[3];
+    float rotation[4];
+    float scale[3];
+    float shear[3];
+};
+
+/// Where an instance is during the shutter: one matrix (still), two matrices (linear), or keys evenly spaced on [0, 1].
+struct InstanceMotion {
+    enum class Kind : unsigned char { still, linear, keys };
+    unsigned first;   ///< into SceneView::matrices (still, linear) or SceneView::keys
+    unsigned count;
+    Kind kind;
+    bool identity;    ///< flattened: coordinates are relative to the render origin already
+};
+
+/// A triangle that emits. Chosen in proportion to luminance * world area.
+struct EmissiveTriangle {
+    unsigned instance, primitive;
+};
+
+/// Everything that emits, as next-event estimation sees it: entries that compete for the one shadow ray of a hit.
+struct LightSet {
+    const Light* keys;            ///< [sum of counts]
+    const int* first;             ///< [count] into keys
+    const int* key_count;         ///< [count]
+    int count;                    ///< punctual and area lights
+    int visible_count;            ///< how many of them have a surface (area, spheres, suns with an angle); those come first
+    // emissive triangles, as one entry
+    const EmissiveTriangle* triangles;
+    const float* triangle_cdf;    ///< [triangle_count + 1], from 0 to 1
+    int triangle_count;
+    const float* instance_density;///< [instance] luminance / sum(luminance * area): pdf per area of its triangles
+    float emitted_power;          ///< sum(luminance * area) over all emissive triangles
+    Vec3f emitter_centre;
+    float emitter_radius_squared;
+    // environment
+    Vec3f environment;            ///< constant radiance; unused with a map
+    bool environment_visible;     ///< to camera rays
+    bool has_map;
+    EnvironmentMap map;
+};
+
+struct SceneView {
+    const Geometry* geometries;
+    const Instance* instances;
+    const InstanceMotion* motions;   ///< [instance]
+    const Affine* matrices;
+    const TransformKey* keys;
+    const Material* materials;
+    const Texture* textures;
+    LightSet lights;
+    Camera camera;
+    Settings settings;
+};
+
+/// What a shot asks of the kernels beyond the plain case; they are compiled once a set, so a shot pays for what it uses.
+namespace requirement {
+inline constexpr unsigned kMaps = 1;        ///< textures, normal maps, vertex colours, unlit materials
+inline constexpr unsigned kTransforms = 2;  ///< instances that are not flattened, moving ones
+inline constexpr unsigned kEmitters = 4;    ///< lights that rays can hit: MIS with area lights, triangles, environment maps
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters;
+}  // namespace requirement
+
+}  // namespace kadr::kernels
