@@ -31,7 +31,8 @@ class Device {
 public:
     virtual ~Device() = default;
     virtual std::string name() const = 0;                       ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
-    virtual void load(const Scene& scene) = 0;                  ///< once a shot; the scene outlives the device
+    /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image, copied.
+    virtual void load(const Scene& scene, const Image* environment) = 0;
     virtual void set_frame(const SceneSnapshot& snapshot) = 0;
     virtual void render(const Pass& pass, Film& film) = 0;      ///< adds to the film
     virtual DeviceStatistics statistics() const = 0;
