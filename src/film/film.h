@@ -33,16 +33,21 @@ public:
     const FilmLayers& layers() const { return layers_; }
 
     struct Beauty { float r = 0, g = 0, b = 0, alpha = 0; };
+    /// Sums over samples; normal in world space; depth (metres along the view axis) and motion (pixels since the previous
+    /// frame, x right, y down) over the samples that hit a surface, whose number is depth_weight.
     struct Surface { float albedo[3] = {}, normal[3] = {}; float depth = 0; float depth_weight = 0; float motion[2] = {}; };
 
     Beauty& beauty(int x, int y) { return beauty_[index(x, y)]; }
     std::uint32_t& samples(int x, int y) { return samples_[index(x, y)]; }
     Surface& surface(int x, int y) { return surface_[index(x, y)]; }     ///< only when layers().any_surface()
-    /// Sums of the luminance of groups of samples, for the error layer: sum and sum of squares over groups, in double.
+    /// For the error layer: sum and sum of squares of the mean luminance of equal groups of samples (a group may be one
+    /// sample), in double.
     struct Groups { double sum = 0, sum_of_squares = 0; std::uint32_t count = 0; };
     Groups& groups(int x, int y) { return groups_[index(x, y)]; }        ///< only when layers().error
 
-    /// Linear radiance (premultiplied alpha) and the layers, sums over counts.
+    /// Linear radiance (premultiplied alpha) and the layers, sums over counts: R G B A, albedo.R/G/B, normal.X/Y/Z (unit,
+    /// or zero), depth.Z (+infinity where nothing was hit), motion.X/Y, samples.N, error.Y (standard error of the
+    /// luminance). Holds no NaN, and no infinity but that of the depth.
     Image develop() const;
 
 private:

@@ -1,0 +1,95 @@
+#include "film/film.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kadr {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+FilmLayers all_layers() { return {true, true, true, true, true, true}; }
+
+int channel(const Image& image, const std::string& name) {
+    for (std::size_t i = 0; i < image.channels.size(); ++i)
+        if (image.channels[i] == name) return static_cast<int>(i);
+    ADD_FAILURE() << "no channel " << name;
+    return 0;
+}
+
+TEST(Film, NamesTheChannelsInOrder) {
+    EXPECT_THAT(Film(1, 1, {}).develop().channels, testing::ElementsAre("R", "G", "B", "A"));
+    EXPECT_THAT(Film(1, 1, all_layers()).develop().channels,
+                testing::ElementsAre("R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z",
+                                     "depth.Z", "motion.X", "motion.Y", "samples.N", "error.Y"));
+}
+
+TEST(Film, DividesSumsBySamples) {
+    Film film(2, 1, all_layers());
+    film.beauty(1, 0) = {4, 8, 12, 2};
+    film.samples(1, 0) = 4;
+    film.surface(1, 0) = {{1, 2, 3}, {0, 3, 4}, 6, 2, {5, -1}};
+    const Image image = film.develop();
+    const auto at = [&](const char* name) { return image.at(1, 0, channel(image, name)); };
+    EXPECT_EQ(at("R"), 1);
+    EXPECT_EQ(at("G"), 2);
+    EXPECT_EQ(at("B"), 3);
+    EXPECT_EQ(at("A"), 0.5f);
+    EXPECT_EQ(at("albedo.B"), 0.75f);
+    EXPECT_FLOAT_EQ(at("normal.Y"), 0.6f);
+    EXPECT_FLOAT_EQ(at("normal.Z"), 0.8f);
+    EXPECT_EQ(at("depth.Z"), 3);
+    EXPECT_EQ(at("motion.X"), 2.5f);
+    EXPECT_EQ(at("motion.Y"), -0.5f);
+    EXPECT_EQ(at("samples.N"), 4);
+}
+
+TEST(Film, OpaqueStaysOpaqueForEveryNumberOfSamples) {
+    Film film(1, 1, {});
+    for (std::uint32_t n = 1; n <= 4096; ++n) {
+        film.clear();
+        film.beauty(0, 0).alpha = static_cast<float>(n);
+        film.samples(0, 0) = n;
+        ASSERT_EQ(film.develop().at(0, 0, 3), 1.0f) << n;
+    }
+}
+
+TEST(Film, APixelWithoutSamplesIsTransparentAndInfinitelyFar) {
+    const Image image = Film(1, 1, all_layers()).develop();
+    for (std::size_t i = 0; i < image.channels.size(); ++i)
+        EXPECT_EQ(image.pixels[i], image.channels[i] == "depth.Z" ? kInfinity : 0.0f) << image.channels[i];
+}
+
+TEST(Film, HoldsNoNanAndNoInfinityButTheBackgroundsDepth) {
+    Film film(1, 1, all_layers());
+    film.beauty(0, 0) = {kNan, kInfinity, -kInfinity, kNan};
+    film.samples(0, 0) = 1;
+    film.surface(0, 0) = {{kNan, kInfinity, 0}, {kNan, 0, 1}, kNan, 1, {kInfinity, kNan}};
+    film.groups(0, 0) = {kNan, 1, 4};
+    for (const float value : film.develop().pixels) EXPECT_TRUE(std::isfinite(value)) << value;
+}
+
+TEST(Film, ErrorIsTheStandardErrorOfTheMean) {
+    Film film(1, 1, all_layers());
+    // Group means 1, 2, 3, 4: sample variance 5/3, standard error sqrt(5/3 / 4).
+    film.groups(0, 0) = {10, 30, 4};
+    const Image image = film.develop();
+    EXPECT_FLOAT_EQ(image.at(0, 0, channel(image, "error.Y")), std::sqrt(5.0f / 12.0f));
+}
+
+TEST(Film, ClearForgetsEverything) {
+    Film film(1, 1, all_layers());
+    film.beauty(0, 0) = {1, 1, 1, 1};
+    film.samples(0, 0) = 1;
+    film.surface(0, 0) = {{1, 1, 1}, {0, 0, 1}, 1, 1, {1, 1}};
+    film.groups(0, 0) = {1, 1, 2};
+    film.clear();
+    EXPECT_EQ(film.develop().pixels, Film(1, 1, all_layers()).develop().pixels);
+}
+
+}  // namespace
+}  // namespace kadr
