@@ -18,6 +18,8 @@ struct RenderOptions {
     ShotOverrides overrides;
     DeviceRequest device;
     bool overwrite = false;
+    /// Video file where neither the shot nor the overrides name one; "{name}" is the shot's name. Empty: none.
+    std::string default_video;
 };
 
 /// Seconds of wall time by stage (stages overlap, so they need not add up to the total).
@@ -64,8 +66,12 @@ struct PreviewOptions {
 };
 FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events);
 
-/// Everything that can be known before rendering. @return warnings. @throws InputError with all problems
+/// Everything that can be known before rendering; writes nothing. @return warnings. @throws InputError with all problems
 std::vector<Diagnostic> check_shot(const std::filesystem::path& shot, const ShotOverrides& overrides);
+
+/// Bytes that this process holds now, and the most it has held.
+std::size_t current_memory_bytes();
+std::size_t peak_memory_bytes();
 
 /// Set by SIGINT and SIGTERM; render functions stop at the next opportunity and throw Interrupted.
 std::atomic<bool>& interrupt_requested();

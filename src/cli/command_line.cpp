@@ -1,0 +1,306 @@
+#include "cli/command_line.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "base/version.h"
+
+namespace kadr {
+namespace {
+
+constexpr const char* kShotHelp = "shot file (.yaml)";
+
+/// Raw texts that need more than CLI11's conversions.
+struct RawOptions {
+    std::string shot, size, device = "auto";
+    std::vector<std::string> set, shots;
+    int frame = 0, threads = 0, samples = 0;
+    std::string time;
+};
+
+int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value <= 0)
+        throw InputError(fmt::format("{} is '{}'", option, text), expected);
+    return value;
+}
+
+std::pair<int, int> parse_size(const std::string& text, const std::string& whole) {
+    static const std::string kExpected = "expected WIDTHxHEIGHT in pixels, as in --size 640x360";
+    const std::size_t at = text.find('x');
+    if (at == std::string::npos) throw InputError(fmt::format("--size is '{}'", whole), kExpected);
+    const auto part = [&](const std::string& number) {
+        try {
+            return parse_number(number, "--size", kExpected);
+        } catch (const InputError&) {
+            throw InputError(fmt::format("--size is '{}'", whole), kExpected);
+        }
+    };
+    return {part(text.substr(0, at)), part(text.substr(at + 1))};
+}
+
+std::pair<std::string, std::string> parse_setting(const std::string& text) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos || at == 0)
+        throw InputError(fmt::format("--set is '{}'", text), "expected KEY.PATH=VALUE, as in --set render.samples=16");
+    return {text.substr(0, at), text.substr(at + 1)};
+}
+
+/// "1.75s", "1.75 s" or "1.75".
+double parse_seconds(const std::string& text) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    std::string unit = text.substr(used);
+    unit.erase(0, unit.find_first_not_of(' ') == std::string::npos ? unit.size() : unit.find_first_not_of(' '));
+    if (used == 0 || !(unit.empty() || unit == "s") || !(value > -1e9 && value < 1e9))
+        throw InputError(fmt::format("--time is '{}'", text), "expected seconds, as in --time 1.75s");
+    return value;
+}
+
+/// The parser and where its values go.
+class Parser {
+public:
+    Parser();
+    Invocation parse(std::vector<std::string> arguments);
+
+private:
+    CLI::App* add(Command command, const std::string& name, const std::string& description, const std::string& example);
+    void add_shot(CLI::App* app);
+    void add_overrides(CLI::App* app);
+    void add_set(CLI::App* app);
+    void add_device(CLI::App* app);
+    void add_render();
+    void add_preview();
+    void add_check();
+    void add_describe();
+    void add_smoke();
+    void add_info();
+    void add_devices();
+
+    CLI::App* chosen(const std::vector<std::string>& arguments) const;
+    [[noreturn]] void refuse(const std::vector<std::string>& arguments, const CLI::ParseError& error) const;
+    void refuse_unknown_command(const std::vector<std::string>& arguments) const;
+    void refuse_unknown_option(const CLI::App& app, const std::vector<std::string>& arguments) const;
+    void fill_in();
+    void fill_overrides(RenderOptions& options) const;
+
+    CLI::App app_{"kadr renders animated shots of glTF scenes to images and video.", "kadr"};
+    std::map<Command, CLI::App*> commands_;
+    Invocation invocation_;
+    RawOptions raw_;
+};
+
+Parser::Parser() {
+    app_.set_version_flag("--version", fmt::format("kadr {}", kVersion), "print the version");
+    app_.require_subcommand(1);
+    app_.footer("Example:\n  kadr render shots/turntable.yaml\n\n"
+                "Exit codes: 0 done, 1 the render failed, 2 bad usage or input, 130 interrupted.\n"
+                "`kadr COMMAND --help` shows the options of a command.");
+    add_render();
+    add_preview();
+    add_check();
+    add_describe();
+    add_smoke();
+    add_info();
+    add_devices();
+}
+
+CLI::App* Parser::add(Command command, const std::string& name, const std::string& description,
+                      const std::string& example) {
+    CLI::App* app = app_.add_subcommand(name, description);
+    app->footer("Example:\n  " + example);
+    commands_[command] = app;
+    return app;
+}
+
+void Parser::add_shot(CLI::App* app) { app->add_option("SHOT", raw_.shot, kShotHelp)->required(); }
+
+void Parser::add_set(CLI::App* app) {
+    app->add_option("--set", raw_.set, "KEY.PATH=VALUE over the shot file's, YAML value; repeatable")
+        ->allow_extra_args(false);
+}
+
+void Parser::add_device(CLI::App* app) {
+    app->add_option("--device", raw_.device, "auto, cpu or hiprt")->capture_default_str();
+    app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)")->check(CLI::PositiveNumber);
+}
+
+void Parser::add_overrides(CLI::App* app) {
+    add_set(app);
+    app->add_option("--samples", raw_.samples, "samples a pixel")->check(CLI::PositiveNumber);
+    app->add_option("--size", raw_.size, "WIDTHxHEIGHT in pixels");
+    add_device(app);
+}
+
+void Parser::add_render() {
+    CLI::App* app = add(Command::render, "render", "render all frames, then the video; complete frames are kept",
+                        "kadr render shots/turntable.yaml --frames 1-24x2,40 --samples 16 --video draft.mp4");
+    RenderOptions& options = invocation_.render;
+    add_shot(app);
+    app->add_option("--frames", options.overrides.frames, "frames to render: 1-24x2,40");
+    app->add_option("--output", options.overrides.output, "pattern of the frames' files: out/{name}.{frame:04}.png");
+    app->add_option("--video", options.overrides.video, "video file, or none");
+    app->add_option("--default-video", options.default_video,
+                    "video file where neither the shot nor --video names one; {name} is the shot's name");
+    add_overrides(app);
+    app->add_flag("--overwrite", options.overwrite, "render frames that are complete, too");
+    app->add_flag("--stats", invocation_.stats, "print what the device counted for each frame");
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_preview() {
+    CLI::App* app = add(Command::preview, "preview", "render one frame at preview quality",
+                        "kadr preview shots/turntable.yaml --frame 42 --output still.png");
+    add_shot(app);
+    CLI::Option* frame = app->add_option("--frame", raw_.frame, "number of the frame (default: the shot's first)");
+    app->add_option("--time", raw_.time, "time in seconds instead: 1.75s")->excludes(frame);
+    app->add_option("--output", invocation_.preview.output, "image file (default: NAME.FRAME.preview.png)");
+    add_overrides(app);
+    app->add_flag("--stats", invocation_.stats, "print what the device counted");
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_check() {
+    CLI::App* app = add(Command::check, "check", "all that can be known before rendering; writes nothing",
+                        "kadr check shots/turntable.yaml shots/pan.yaml");
+    app->add_option("SHOT", raw_.shots, kShotHelp)->required();
+    add_set(app);
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_describe() {
+    CLI::App* app = add(Command::describe, "describe", "the manual of the shot format, or of one key",
+                        "kadr describe camera.focal_length");
+    app->add_option("KEY", invocation_.key, "a section or a key, as in render.samples");
+    app->add_flag("--json-schema", invocation_.json_schema, "the format as a JSON Schema, for editors");
+}
+
+void Parser::add_smoke() {
+    CLI::App* app = add(Command::smoke, "smoke", "small quick renders with sanity checks, for continuous integration",
+                        "kadr smoke shots/turntable.yaml shots/room.yaml --junit smoke.xml");
+    app->add_option("SHOT", raw_.shots, kShotHelp)->required();
+    app->add_option("--junit", invocation_.junit, "write the outcome as JUnit XML");
+    app->add_flag("--update", invocation_.smoke.update, "write the golden images beside the shots");
+    add_device(app);
+}
+
+void Parser::add_info() {
+    CLI::App* app = add(Command::info, "info", "what an image that Kadr wrote says about itself",
+                        "kadr info output/turntable/turntable.0042.png");
+    app->add_option("FILE", invocation_.file, "image file")->required();
+    app->add_flag("--json", invocation_.json, "as a JSON object");
+}
+
+void Parser::add_devices() {
+    CLI::App* app = add(Command::devices, "devices", "what there is to render on, what is usable and why not",
+                        "kadr devices");
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+CLI::App* Parser::chosen(const std::vector<std::string>& arguments) const {
+    for (const std::string& argument : arguments)
+        for (const auto& [command, app] : commands_)
+            if (app->get_name() == argument) return app;
+    return nullptr;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates, const std::string& otherwise) {
+    const std::optional<std::string> nearest = nearest_name(word, candidates);
+    return nearest ? fmt::format("did you mean '{}'?", *nearest) : otherwise;
+}
+
+void Parser::refuse_unknown_command(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> names;
+    for (const auto& [command, app] : commands_) names.push_back(app->get_name());
+    const std::string all = fmt::format("expected one of {}; see kadr --help", fmt::join(names, ", "));
+    const auto word = std::find_if(arguments.begin(), arguments.end(),
+                                   [](const std::string& argument) { return argument.rfind('-', 0) != 0; });
+    if (word == arguments.end()) throw InputError("no command was given", all);
+    throw InputError(fmt::format("unknown command '{}'", *word), did_you_mean(*word, names, all));
+}
+
+void Parser::refuse_unknown_option(const CLI::App& app, const std::vector<std::string>& arguments) const {
+    std::vector<std::string> known{"--help"};
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& argument : arguments) {
+        const std::string word = argument.substr(0, argument.find('='));
+        if (word.rfind("--", 0) != 0 || word == "--" || std::find(known.begin(), known.end(), word) != known.end()) continue;
+        throw InputError(fmt::format("unknown option '{}' of kadr {}", word, app.get_name()),
+                         did_you_mean(word, known, fmt::format("see kadr {} --help", app.get_name())));
+    }
+}
+
+void Parser::refuse(const std::vector<std::string>& arguments, const CLI::ParseError& error) const {
+    const CLI::App* app = chosen(arguments);
+    if (!app) refuse_unknown_command(arguments);
+    refuse_unknown_option(*app, arguments);
+    throw InputError(error.what(), fmt::format("see kadr {} --help", app->get_name()));
+}
+
+void Parser::fill_overrides(RenderOptions& options) const {
+    options.shot = raw_.shot;
+    options.device.name = raw_.device;
+    options.device.threads = raw_.threads;
+    options.overrides.samples = raw_.samples;
+    for (const std::string& text : raw_.set) options.overrides.set.push_back(parse_setting(text));
+    if (raw_.size.empty()) return;
+    const auto [width, height] = parse_size(raw_.size, raw_.size);
+    options.overrides.width = width;
+    options.overrides.height = height;
+}
+
+void Parser::fill_in() {
+    fill_overrides(invocation_.render);
+    invocation_.preview.render = invocation_.render;
+    if (commands_[Command::preview]->count("--frame") > 0) invocation_.preview.frame = raw_.frame;
+    if (!raw_.time.empty()) invocation_.preview.time_s = parse_seconds(raw_.time);
+    invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());
+    invocation_.smoke.shots = invocation_.shots;
+    invocation_.smoke.device = invocation_.render.device;
+}
+
+Invocation Parser::parse(std::vector<std::string> arguments) {
+    // Options may stand before the command, too: CLI11 wants the command first.
+    const CLI::App* command = chosen(arguments);
+    if (command && !arguments.empty() && arguments.front().rfind('-', 0) == 0) {
+        const auto at = std::find(arguments.begin(), arguments.end(), command->get_name());
+        std::rotate(arguments.begin(), at, at + 1);
+    }
+    try {
+        app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        invocation_.text = (command ? command->help() : app_.help());
+        return invocation_;
+    } catch (const CLI::CallForVersion&) {
+        invocation_.text = fmt::format("kadr {}\n", kVersion);
+        return invocation_;
+    } catch (const CLI::ParseError& error) {
+        refuse(arguments, error);
+    }
+    for (const auto& [name, app] : commands_)
+        if (app->parsed()) invocation_.command = name;
+    fill_in();
+    return invocation_;
+}
+
+}  // namespace
+
+Invocation parse_command_line(const std::vector<std::string>& arguments) { return Parser().parse(arguments); }
+
+}  // namespace kadr

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/render_job.h"
+#include "render/smoke.h"
+
+namespace kadr {
+
+enum class Command { render, preview, check, describe, smoke, info, devices };
+
+/// What the user asked for. Only the members of `command` are filled in.
+struct Invocation {
+    Command command = Command::render;
+    RenderOptions render;                        ///< render, preview (its shot and overrides), check (overrides)
+    PreviewOptions preview;
+    SmokeOptions smoke;
+    std::vector<std::filesystem::path> shots;    ///< check
+    std::filesystem::path file;                  ///< info
+    std::filesystem::path junit;
+    std::string key;                             ///< describe
+    bool json_schema = false;
+    bool json = false, stats = false;
+    std::string text;                            ///< help or version asked for: print this and end
+};
+
+/// Reads the arguments, in any order.
+/// @throws InputError  with "did you mean" for unknown commands and options
+Invocation parse_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace kadr

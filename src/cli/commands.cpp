@@ -1,0 +1,126 @@
+#include "cli/commands.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/reporter.h"
+#include "device/device.h"
+#include "output/image_io.h"
+#include "shot/shot_parser.h"
+
+namespace kadr {
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
+
+void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+std::string json_line(const nlohmann::ordered_json& value) {
+    return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+int run_render(const Invocation& invocation) {
+    const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
+    reporter->summary(render_shot(invocation.render, reporter->events()));
+    return kDone;
+}
+
+int run_preview(const Invocation& invocation) {
+    const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
+    const FrameReport report = preview_frame(invocation.preview, reporter->events());
+    reporter->clear();
+    if (!invocation.json) print(fmt::format("preview: {} in {:.2f} s\n", report.files.front().string(), report.seconds));
+    return kDone;
+}
+
+int run_check(const Invocation& invocation) {
+    const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, false);
+    std::vector<Diagnostic> problems;
+    for (const std::filesystem::path& shot : invocation.shots) {
+        try {
+            for (const Diagnostic& warning : check_shot(shot, invocation.render.overrides)) reporter->warning(warning);
+            if (!invocation.json) print(fmt::format("{}: ok\n", shot.string()));
+        } catch (const InputError& error) {
+            problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+        }
+    }
+    if (!problems.empty()) throw InputError(problems);
+    return kDone;
+}
+
+int run_describe(const Invocation& invocation) {
+    std::string text = invocation.json_schema ? schema_as_json() : describe_schema(invocation.key);
+    if (text.empty() || text.back() != '\n') text += '\n';
+    print(text);
+    return kDone;
+}
+
+std::string smoke_line(const SmokeCase& result) {
+    const std::string compared =
+        result.compared ? fmt::format(", FLIP {:.4f} of {:.4f}", result.flip, result.tolerance) : std::string();
+    std::string line = fmt::format("{} {} frame {}{}{}\n", result.failures.empty() ? "ok    " : "FAILED", result.shot,
+                                   result.frame, compared, result.updated ? ", golden image written" : "");
+    for (const std::string& failure : result.failures) line += fmt::format("  {}\n", failure);
+    return line;
+}
+
+void write_junit(const std::filesystem::path& file, const std::vector<SmokeCase>& cases) {
+    if (file.empty()) return;
+    std::ofstream stream(file);
+    stream << junit_xml(cases);
+    stream.close();
+    if (!stream) throw RenderError(fmt::format("cannot write {}", file.string()));
+}
+
+int run_smoke(const Invocation& invocation) {
+    const std::vector<SmokeCase> cases = smoke(invocation.smoke, [](const SmokeCase& result) {
+        print(smoke_line(result));
+        std::fflush(stdout);
+    });
+    write_junit(invocation.junit, cases);
+    const auto any = [&](auto test) { return std::any_of(cases.begin(), cases.end(), test); };
+    if (any([](const SmokeCase& result) { return result.bad_input; })) return kBadInput;
+    return any([](const SmokeCase& result) { return !result.failures.empty(); }) ? kFailed : kDone;
+}
+
+int run_info(const Invocation& invocation) {
+    const Metadata metadata = image_io().read_metadata(invocation.file);
+    if (metadata.empty())
+        throw InputError(fmt::format("{} says nothing about itself: Kadr did not write it", invocation.file.string()));
+    if (invocation.json) {
+        print(json_line(nlohmann::ordered_json(metadata)));
+        return kDone;
+    }
+    for (const auto& [key, value] : metadata) print(fmt::format("{:<16} {}\n", key, value));
+    return kDone;
+}
+
+int run_devices(const Invocation& invocation) {
+    for (const DeviceReport& device : list_devices()) {
+        if (invocation.json)
+            print(json_line({{"name", device.name}, {"description", device.description}, {"usable", device.usable},
+                             {"reason", device.reason}}));
+        else
+            print(fmt::format("{:<6} {}{}\n", device.name, device.usable ? "usable" : "not usable: " + device.reason,
+                              device.description.empty() ? "" : "; " + device.description));
+    }
+    return kDone;
+}
+
+}  // namespace
+
+int run_command(const Invocation& invocation) {
+    static const std::map<Command, int (*)(const Invocation&)> kCommands = {
+        {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
+        {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::info, run_info},
+        {Command::devices, run_devices},
+    };
+    return kCommands.at(invocation.command)(invocation);
+}
+
+}  // namespace kadr

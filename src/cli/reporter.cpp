@@ -1,0 +1,220 @@
+#include "cli/reporter.h"
+
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kadr {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kBarInterval_s = 0.1, kJsonInterval_s = 0.5;
+constexpr int kBarWidth = 24;
+
+std::string readable_bytes(std::size_t bytes) { return fmt::format("{:.0f} MiB", bytes / 1048576.0); }
+
+std::string readable_time(double seconds) {
+    if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+    const int whole = static_cast<int>(seconds);
+    return whole < 3600 ? fmt::format("{}:{:02} min", whole / 60, whole % 60)
+                        : fmt::format("{}:{:02}:{:02} h", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string frame_line(const FrameReport& report) {
+    const std::string file = report.files.empty() ? std::string() : report.files.front().string();
+    if (report.reused) return fmt::format("frame {}: reused {}", report.frame, file);
+    return fmt::format("frame {}: {} in {}", report.frame, file, readable_time(report.seconds));
+}
+
+std::string stats_line(const FrameReport& report) {
+    const DeviceStatistics& device = report.device;
+    return fmt::format("  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
+                       "flattened triangles {}, motion error {:.3g} px",
+                       device.rays, device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
+                       device.instances, device.moving_instances, device.flattened_triangles, report.motion_error_px);
+}
+
+std::string summary_text(const RenderSummary& summary) {
+    const StageTimes& times = summary.times;
+    std::string text = fmt::format("{} frames ({} reused) in {}: load {:.2f} s, scene {:.2f} s, trace {:.2f} s, write {:.2f} s, "
+                                   "encode {:.2f} s\n",
+                                   summary.frames, summary.reused, readable_time(times.total), times.load, times.scene,
+                                   times.trace, times.write, times.encode);
+    text += fmt::format("{:.2f} million samples/s, peak memory {}\n", summary.samples_per_s / 1e6,
+                        readable_bytes(summary.peak_memory_bytes));
+    text += fmt::format("device: {}{}\n", summary.device, summary.device_why.empty() ? "" : "; " + summary.device_why);
+    if (!summary.video.empty()) text += fmt::format("video: {}\n", summary.video.string());
+    return text;
+}
+
+void print(std::FILE* stream, const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stream);
+    std::fflush(stream);
+}
+
+/// One line a frame, for logs.
+class PlainReporter : public Reporter {
+public:
+    explicit PlainReporter(bool stats) : stats_(stats) {}
+    void warning(const Diagnostic& warning) override { print(stderr, warning.text() + "\n"); }
+    void progress(int, double, int) override {}
+    void frame_done(const FrameReport& report) override {
+        print(stdout, frame_line(report) + "\n");
+        if (stats_ && !report.reused) print(stdout, stats_line(report) + "\n");
+    }
+    void summary(const RenderSummary& summary) override { print(stdout, summary_text(summary)); }
+
+private:
+    const bool stats_;
+};
+
+/// A bar that is drawn over itself on standard error.
+class BarReporter : public PlainReporter {
+public:
+    explicit BarReporter(bool stats) : PlainReporter(stats), stats_(stats) {}
+    ~BarReporter() override { clear(); }
+
+    void warning(const Diagnostic& warning) override {
+        clear();
+        PlainReporter::warning(warning);
+    }
+    void progress(int frame, double fraction, int frames_left) override {
+        const std::lock_guard lock(mutex_);
+        const Clock::time_point now = Clock::now();
+        if (now - drawn_ < std::chrono::duration<double>(kBarInterval_s)) return;
+        drawn_ = now;
+        draw(frame, fraction, frames_left);
+    }
+    void frame_done(const FrameReport& report) override {
+        if (stats_) {
+            clear();
+            PlainReporter::frame_done(report);
+        }
+    }
+    void summary(const RenderSummary& summary) override {
+        clear();
+        PlainReporter::summary(summary);
+    }
+    void clear() override {
+        const std::lock_guard lock(mutex_);
+        if (shown_) print(stderr, "\r\033[K");
+        shown_ = false;
+    }
+
+private:
+    /// Seconds to go by the pace since the first rendered sample; reused frames do not count as work.
+    double remaining_s(double fraction, int frames_left) {
+        const double at = -frames_left + fraction;  // grows by one a frame
+        if (!paced_) {
+            paced_ = true;
+            begin_ = drawn_;
+            begin_at_ = at;
+        }
+        const double done = at - begin_at_;
+        const double elapsed = std::chrono::duration<double>(drawn_ - begin_).count();
+        return done > 0 ? elapsed / done * (1 - at) : -1;
+    }
+    void draw(int frame, double fraction, int frames_left) {
+        const double left = remaining_s(fraction, frames_left);
+        const int filled = static_cast<int>(fraction * kBarWidth);
+        print(stderr, fmt::format("\r\033[Kframe {} [{}{}] {:3.0f} %  {} left  ETA {}  {}", frame, std::string(filled, '#'),
+                                  std::string(kBarWidth - filled, '.'), fraction * 100, frames_left,
+                                  left < 0 ? "-" : readable_time(left), readable_bytes(current_memory_bytes())));
+        shown_ = true;
+    }
+
+    const bool stats_;
+    std::mutex mutex_;
+    Clock::time_point drawn_{}, begin_{};
+    double begin_at_ = 0;
+    bool paced_ = false, shown_ = false;
+};
+
+Json statistics_json(const DeviceStatistics& device) {
+    return {{"pixel_samples", device.pixel_samples}, {"rays", device.rays},
+            {"dropped_samples", device.dropped_samples}, {"load_s", device.load_s},
+            {"set_frame_s", device.set_frame_s}, {"render_s", device.render_s},
+            {"instances", device.instances}, {"moving_instances", device.moving_instances},
+            {"flattened_triangles", device.flattened_triangles}};
+}
+
+Json frame_json(const FrameReport& report) {
+    Json files = Json::array();
+    for (const auto& file : report.files) files.push_back(file.string());
+    return {{"event", "frame"}, {"frame", report.frame}, {"reused", report.reused}, {"seconds", report.seconds},
+            {"samples", report.samples}, {"dropped", report.dropped}, {"clamped", report.clamped},
+            {"motion_error_px", report.motion_error_px}, {"files", files}};
+}
+
+Json summary_json(const RenderSummary& summary) {
+    const StageTimes& times = summary.times;
+    return {{"event", "summary"}, {"frames", summary.frames}, {"reused", summary.reused},
+            {"seconds", {{"load", times.load}, {"scene", times.scene}, {"trace", times.trace}, {"write", times.write},
+                         {"encode", times.encode}, {"total", times.total}}},
+            {"pixel_samples", summary.pixel_samples}, {"samples_per_s", summary.samples_per_s},
+            {"peak_memory_bytes", summary.peak_memory_bytes}, {"device", summary.device},
+            {"device_why", summary.device_why}, {"video", summary.video.string()}};
+}
+
+/// One JSON object a line on standard output.
+class JsonReporter : public Reporter {
+public:
+    explicit JsonReporter(bool stats) : stats_(stats) {}
+    void warning(const Diagnostic& warning) override {
+        line({{"event", "warning"}, {"file", warning.where.file}, {"line", warning.where.line},
+              {"column", warning.where.column}, {"message", warning.text()}});
+    }
+    void progress(int frame, double fraction, int frames_left) override {
+        {
+            const std::lock_guard lock(mutex_);
+            const Clock::time_point now = Clock::now();
+            if (now - last_ < std::chrono::duration<double>(kJsonInterval_s)) return;
+            last_ = now;
+        }
+        line({{"event", "progress"}, {"frame", frame}, {"fraction", fraction}, {"frames_left", frames_left},
+              {"memory_bytes", current_memory_bytes()}});
+    }
+    void frame_done(const FrameReport& report) override {
+        Json frame = frame_json(report);
+        if (stats_) frame["device"] = statistics_json(report.device);
+        line(frame);
+    }
+    void summary(const RenderSummary& summary) override { line(summary_json(summary)); }
+
+private:
+    void line(const Json& value) {
+        // Paths may hold any bytes; JSON holds UTF-8 alone.
+        const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+        const std::lock_guard lock(mutex_);
+        print(stdout, text);
+    }
+
+    const bool stats_;
+    std::mutex mutex_;
+    Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace
+
+RenderEvents Reporter::events() {
+    RenderEvents events;
+    events.warning = [this](const Diagnostic& diagnostic) { warning(diagnostic); };
+    events.frame_progress = [this](int frame, double fraction, int left) { progress(frame, fraction, left); };
+    events.frame_done = [this](const FrameReport& report) { frame_done(report); };
+    return events;
+}
+
+std::unique_ptr<Reporter> make_reporter(bool json, bool stats) {
+    if (json) return std::make_unique<JsonReporter>(stats);
+    if (isatty(STDERR_FILENO)) return std::make_unique<BarReporter>(stats);
+    return std::make_unique<PlainReporter>(stats);
+}
+
+}  // namespace kadr

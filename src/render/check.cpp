@@ -1,0 +1,70 @@
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "output/encoder.h"
+#include "output/image_io.h"
+#include "render/loaded_shot.h"
+#include "render/output_plan.h"
+#include "render/render_job.h"
+
+namespace kadr {
+namespace {
+
+/// Runs one group of checks; its problems join those of the others instead of hiding them.
+template <class Check>
+void collect(std::vector<Diagnostic>& problems, const Check& check) {
+    try {
+        check();
+    } catch (const InputError& error) {
+        problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+}
+
+/// What the shot says alone, or with its scenes where they could be loaded.
+struct Bound {
+    std::vector<int> frames;
+    std::vector<Diagnostic> warnings;
+};
+
+Bound bind_names(const Shot& shot, std::vector<Diagnostic>& problems) {
+    Bound bound{shot.timing.frames, shot.warnings};
+    collect(problems, [&] {
+        LoadOptions options;
+        options.decode_textures = false;
+        const LoadedShot loaded(shot, options);
+        bound = {loaded.bound().timing().frames, loaded.warnings()};
+    });
+    return bound;
+}
+
+void check_folders(const Shot& shot, const std::vector<int>& frames, std::vector<Diagnostic>& problems) {
+    for (const std::filesystem::path& folder : output_folders(shot.output, frames)) {
+        const std::string reason = why_not_writable(folder);
+        if (reason.empty()) continue;
+        Diagnostic problem;
+        problem.where.file = shot.file.string();
+        problem.found = fmt::format("cannot write to the folder {}", folder.string());
+        problem.expected = reason;
+        problems.push_back(std::move(problem));
+    }
+}
+
+}  // namespace
+
+std::vector<Diagnostic> check_shot(const std::filesystem::path& path, const ShotOverrides& overrides) {
+    const Shot shot = parse_shot(path, overrides);
+    std::vector<Diagnostic> problems;
+    const Bound bound = bind_names(shot, problems);
+    if (shot.output.video)
+        collect(problems, [&] {
+            plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
+        });
+    if (shot.environment.image) collect(problems, [&] { image_io().read_metadata(*shot.environment.image); });
+    for (Diagnostic& problem : colliding_patterns(shot.output, bound.frames)) problems.push_back(std::move(problem));
+    check_folders(shot, bound.frames, problems);
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return bound.warnings;
+}
+
+}  // namespace kadr

@@ -1,0 +1,84 @@
+#include "render/frame_identity.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "base/version.h"
+#include "shot/shot_hash.h"
+
+namespace kadr {
+namespace {
+
+void add_assets(const LoadedShot& shot, Hasher& hasher) {
+    for (const SceneFile& file : shot.scene().files) hasher.add(file.content.hex());
+    const auto& image = shot.shot().environment.image;
+    hasher.add(image ? hash_file(*image).hex() : std::string());
+}
+
+std::string linear_hash(const LoadedShot& shot) {
+    Hasher hasher;
+    hasher.add(kVersion);
+    hash_shot(shot.shot(), hasher);
+    add_assets(shot, hasher);
+    return hasher.finish().hex();
+}
+
+std::string display_hash(const std::string& linear, const Shot& shot, int metered_frame) {
+    Hasher hasher;
+    hasher.add(linear);
+    hash_view(shot, hasher);
+    if (shot.view.automatic) hasher.add(static_cast<std::int64_t>(metered_frame));
+    return hasher.finish().hex();
+}
+
+std::string frame_hash(const std::string& shot, const FrameTime& frame) {
+    Hasher hasher;
+    hasher.add(shot);
+    hasher.add(static_cast<std::int64_t>(frame.number));
+    hasher.add(frame.time.numerator);
+    hasher.add(frame.time.denominator);
+    hasher.add(frame.open_s);
+    hasher.add(frame.close_s);
+    return hasher.finish().hex();
+}
+
+/// "cpu (Embree 3.13.5, 8 lanes, 2 threads)" -> "cpu": threads and lanes do not change a pixel, so they do not belong
+/// into a frame's metadata.
+std::string device_kind(const std::string& name) { return name.substr(0, name.find(' ')); }
+
+}  // namespace
+
+ShotIdentity::ShotIdentity(const LoadedShot& shot, int metered_frame)
+    : linear_(linear_hash(shot)), display_(display_hash(linear_, shot.shot(), metered_frame)) {}
+
+FrameIdentity ShotIdentity::of(const FrameTime& frame) const {
+    return {frame_hash(linear_, frame), frame_hash(display_, frame)};
+}
+
+bool is_linear_file(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return extension == ".exr";
+}
+
+Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
+                        const std::string& device_name) {
+    return {
+        {"shot", shot.name},
+        {"frame", std::to_string(time.number)},
+        {"time", format_number(time.time_s())},
+        {"samples", std::to_string(shot.render.samples)},
+        {"seed", std::to_string(shot.render.seed)},
+        {"version", kVersion},
+        {"device", device_kind(device_name)},
+        {"motion_error_px", fmt::format("{:.4g}", frame.motion_error_px)},
+        {"dropped_samples", std::to_string(frame.statistics.dropped_samples)},
+        {"seconds", fmt::format("{:.3f}", frame.seconds)},
+    };
+}
+
+}  // namespace kadr

@@ -1,0 +1,98 @@
+#include "render/frame_renderer.h"
+
+#include <algorithm>
+
+#include "output/view.h"
+#include "render/loaded_shot.h"
+#include "render/render_job.h"
+#include "render/sample_shares.h"
+#include "render/stopwatch.h"
+
+namespace kadr {
+namespace {
+
+// Enough for a log-average; the value is a function of the shot alone, so any small number would do.
+constexpr int kMeterWidth = 160, kMeterSamples = 16;
+
+void add(DeviceStatistics& sum, const DeviceStatistics& part) {
+    sum.pixel_samples += part.pixel_samples;
+    sum.rays += part.rays;
+    sum.dropped_samples += part.dropped_samples;
+    sum.load_s = part.load_s;
+    sum.set_frame_s += part.set_frame_s;
+    sum.render_s += part.render_s;
+    sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
+    sum.instances = std::max(sum.instances, part.instances);
+    sum.moving_instances = std::max(sum.moving_instances, part.moving_instances);
+}
+
+std::vector<double> weights_of(const std::vector<SceneSnapshot>& parts) {
+    std::vector<double> weights;
+    for (const SceneSnapshot& part : parts) weights.push_back(part.weight);
+    return weights;
+}
+
+void stop_if_interrupted() {
+    if (interrupt_requested()) throw Interrupted();
+}
+
+}  // namespace
+
+FilmLayers film_layers(const std::vector<Aov>& aovs) {
+    const auto has = [&](Aov aov) { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); };
+    FilmLayers layers;
+    layers.albedo = has(Aov::albedo);
+    layers.normal = has(Aov::normal);
+    layers.depth = has(Aov::depth);
+    layers.motion = has(Aov::motion);
+    layers.samples = has(Aov::samples);
+    layers.error = has(Aov::error);
+    return layers;
+}
+
+Film& FrameRenderer::cleared_film(int width, int height, const FilmLayers& layers) {
+    const bool fits = film_ && film_->width() == width && film_->height() == height && film_->layers() == layers;
+    if (fits)
+        film_->clear();
+    else
+        film_.emplace(width, height, layers);
+    return *film_;
+}
+
+RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
+                                    const std::function<void(double)>& progress) {
+    stop_if_interrupted();
+    const Stopwatch watch;
+    RenderedFrame frame;
+    const ImageSpec& image = shot.shot().image;
+    Film& film = cleared_film(image.width, image.height, layers);
+    const std::vector<SceneSnapshot> parts = make_snapshots(shot, time);
+    const int total = shot.shot().render.samples;
+    const std::vector<SampleRange> ranges = deal_samples(weights_of(parts), total);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (ranges[i].count == 0) continue;
+        device_->set_frame(parts[i]);
+        Pass pass{ranges[i].first, ranges[i].count, &interrupt_requested(), {}};
+        if (progress)
+            pass.progress = [&, range = ranges[i]](double fraction) {
+                progress((range.first + fraction * range.count) / total);
+            };
+        device_->render(pass, film);
+        add(frame.statistics, device_->statistics());
+        frame.motion_error_px = std::max(frame.motion_error_px, parts[i].motion.max_error_px);
+        stop_if_interrupted();
+    }
+    frame.image = film.develop();
+    frame.seconds = watch.seconds();
+    return frame;
+}
+
+double meter_exposure(const Shot& shot, const Scene& scene, FrameRenderer& renderer, const FrameTime& first) {
+    Shot small = shot;
+    small.image = limited_width(small.image, kMeterWidth);
+    small.render.samples = std::min(small.render.samples, kMeterSamples);
+    const BoundShot bound(small, scene);
+    return metered_exposure(renderer.render(bound, first, FilmLayers{}).image);
+}
+
+}  // namespace kadr

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "device/device.h"
+#include "film/film.h"
+#include "frame/frame_state.h"
+
+namespace kadr {
+
+/// One frame as it comes from the device: linear radiance and layers.
+struct RenderedFrame {
+    Image image;
+    DeviceStatistics statistics;   ///< summed over the parts of the shutter
+    double motion_error_px = 0;
+    double seconds = 0;
+};
+
+/// The layers that a shot asks for.
+FilmLayers film_layers(const std::vector<Aov>& aovs);
+
+/// Renders frames of bound shots on one device, one after another; keeps the film between frames.
+class FrameRenderer {
+public:
+    explicit FrameRenderer(Device& device) : device_(&device) {}
+
+    /// @throws Interrupted  when a signal asked to stop before the frame was complete
+    RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
+                         const std::function<void(double fraction)>& progress = {});
+
+private:
+    Film& cleared_film(int width, int height, const FilmLayers& layers);
+
+    Device* device_;
+    std::optional<Film> film_;
+};
+
+/// Renders the shot's first frame small and coarse. @return exposure in stops for `view.exposure: auto`
+double meter_exposure(const Shot& shot, const Scene& scene, FrameRenderer& renderer, const FrameTime& first);
+
+}  // namespace kadr

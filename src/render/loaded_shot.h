@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "frame/frame_state.h"
+#include "scene/scene.h"
+#include "shot/shot.h"
+
+namespace kadr {
+
+/// A shot with its scenes and the names bound between them. Stays where it is: the bound shot points into it.
+class LoadedShot {
+public:
+    /// @throws InputError  from the loader or from binding
+    explicit LoadedShot(Shot shot, const LoadOptions& options = {});
+    LoadedShot(const LoadedShot&) = delete;
+    LoadedShot& operator=(const LoadedShot&) = delete;
+
+    const Shot& shot() const { return shot_; }
+    const Scene& scene() const { return scene_; }
+    const BoundShot& bound() const { return bound_; }
+    /// Those of the shot, the scenes and the binding, in this order.
+    std::vector<Diagnostic> warnings() const;
+
+private:
+    Shot shot_;
+    Scene scene_;
+    BoundShot bound_;
+};
+
+/// The glTF files that a shot names.
+std::vector<SceneFileRequest> scene_requests(const Shot& shot);
+
+/// The size with the longer side at most `max_width`, the aspect kept, at least one pixel high.
+ImageSpec limited_width(ImageSpec image, int max_width);
+
+}  // namespace kadr

@@ -1,0 +1,231 @@
+#include "render/render_job.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "output/encoder.h"
+#include "output/frame_writer.h"
+#include "output/image_io.h"
+#include "render/delivery.h"
+#include "render/frame_identity.h"
+#include "render/frame_renderer.h"
+#include "render/loaded_shot.h"
+#include "render/output_plan.h"
+#include "render/stopwatch.h"
+#include "shot/shot_parser.h"
+
+namespace kadr {
+namespace {
+
+void replace_name(std::string& pattern, const std::string& name) {
+    static const std::string kPlaceholder = "{name}";
+    const std::size_t at = pattern.find(kPlaceholder);
+    if (at != std::string::npos) pattern.replace(at, kPlaceholder.size(), name);
+}
+
+void add_default_video(Shot& shot, std::string file) {
+    if (shot.output.video || file.empty()) return;
+    replace_name(file, shot.name);
+    shot.output.video.emplace();
+    shot.output.video->file = std::filesystem::absolute(file);
+}
+
+/// The first frame of the shot itself, whatever part of it the command line renders.
+int first_frame_of_shot(const RenderOptions& options, const LoadedShot& loaded) {
+    if (options.overrides.frames.empty()) return loaded.bound().timing().frames.front();
+    ShotOverrides whole = options.overrides;
+    whole.frames.clear();
+    const Shot shot = parse_shot(options.shot, whole);
+    return BoundShot(shot, loaded.scene()).timing().frames.front();
+}
+
+/// One call of render_shot: members in the order in which they come to be.
+class RenderJob {
+public:
+    RenderJob(const RenderOptions& options, const RenderEvents& events);
+    RenderSummary run();
+
+private:
+    void warn(const std::vector<Diagnostic>& warnings);
+    void open_output();
+    void deliver(int frame, int frames_left);
+    bool is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const;
+    void render(DeliveryItem& item, const FrameTime& time, int frames_left);
+    void load_device();
+    ViewSpec view_with_exposure();
+    void report_written();
+    void finish();
+
+    const RenderOptions& options_;
+    const RenderEvents& events_;
+    Stopwatch total_;
+    RenderSummary summary_;
+    std::optional<LoadedShot> loaded_;
+    std::optional<VideoPlan> video_;
+    std::optional<ShotIdentity> identity_;
+    int metered_frame_ = 0;
+    DeviceChoice device_;
+    bool device_loaded_ = false;
+    std::optional<FrameRenderer> renderer_;
+    std::optional<double> exposure_;
+    std::optional<Delivery> delivery_;
+};
+
+RenderJob::RenderJob(const RenderOptions& options, const RenderEvents& events) : options_(options), events_(events) {
+    Shot shot = parse_shot(options.shot, options.overrides);
+    add_default_video(shot, options.default_video);
+    device_ = make_device(options.device);
+    open_image_io_in_background();
+    if (shot.output.video)
+        video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
+    loaded_.emplace(std::move(shot));
+    metered_frame_ = loaded_->shot().view.automatic ? first_frame_of_shot(options, *loaded_) : 0;
+    identity_.emplace(*loaded_, metered_frame_);
+    renderer_.emplace(*device_.device);
+    summary_.device = device_.device->name();
+    summary_.device_why = device_.why;
+    summary_.times.load = total_.seconds();
+}
+
+void RenderJob::warn(const std::vector<Diagnostic>& warnings) {
+    for (const Diagnostic& warning : warnings) {
+        events_.warning(warning);
+        summary_.warnings.push_back(warning);
+    }
+}
+
+void RenderJob::open_output() {
+    const Shot& shot = loaded_->shot();
+    const std::vector<int>& frames = loaded_->bound().timing().frames;
+    const std::vector<Diagnostic> problems = colliding_patterns(shot.output, frames);
+    if (!problems.empty()) throw InputError(problems);
+    prepare_folders(output_folders(shot.output, frames));
+    delivery_.emplace(shot.output.png_bits, video_);
+}
+
+bool RenderJob::is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const {
+    return std::all_of(files.begin(), files.end(), [&](const std::filesystem::path& file) {
+        std::error_code ignored;
+        return std::filesystem::exists(file, ignored) &&
+               stored_settings_hash(file) == identity.of(is_linear_file(file));
+    });
+}
+
+/// On the first frame that has to be rendered: a run that finds every frame complete builds nothing.
+void RenderJob::load_device() {
+    if (device_loaded_) return;
+    const Stopwatch watch;
+    device_.device->load(loaded_->scene());
+    summary_.times.scene += watch.seconds();
+    device_loaded_ = true;
+}
+
+ViewSpec RenderJob::view_with_exposure() {
+    ViewSpec view = loaded_->shot().view;
+    if (!view.automatic) return view;
+    if (!exposure_) {
+        load_device();
+        const FrameTime first = loaded_->bound().sequence().frame(metered_frame_);
+        exposure_ = meter_exposure(loaded_->shot(), loaded_->scene(), *renderer_, first);
+    }
+    view.exposure_stops = *exposure_;
+    view.automatic = false;
+    return view;
+}
+
+void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_left) {
+    load_device();
+    item.view = view_with_exposure();
+    const Shot& shot = loaded_->shot();
+    RenderedFrame frame =
+        renderer_->render(loaded_->bound(), time, film_layers(shot.output.aovs),
+                          [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); });
+    item.metadata = frame_metadata(shot, time, frame, summary_.device);
+    item.report.seconds = frame.seconds;
+    item.report.samples = frame.statistics.pixel_samples;
+    item.report.dropped = frame.statistics.dropped_samples;
+    item.report.motion_error_px = frame.motion_error_px;
+    item.report.device = frame.statistics;
+    item.image = std::move(frame.image);
+    summary_.pixel_samples += frame.statistics.pixel_samples;
+    summary_.times.scene += frame.statistics.set_frame_s;
+    summary_.times.trace += frame.statistics.render_s;
+}
+
+void RenderJob::deliver(int frame, int frames_left) {
+    if (interrupt_requested()) throw Interrupted();
+    const FrameTime time = loaded_->bound().sequence().frame(frame);
+    DeliveryItem item;
+    item.report.frame = frame;
+    item.report.files = frame_files(loaded_->shot().output, frame);
+    item.identity = identity_->of(time);
+    item.report.reused = !options_.overwrite && is_complete(item.report.files, item.identity);
+    if (!item.report.reused)
+        render(item, time, frames_left);
+    else if (video_ && is_linear_file(video_source(item.report.files)))
+        item.view = view_with_exposure();
+    ++summary_.frames;
+    summary_.reused += item.report.reused;
+    delivery_->push(std::move(item));
+}
+
+void RenderJob::report_written() {
+    for (const FrameReport& report : delivery_->take_written()) {
+        if (report.dropped > 0) {
+            Diagnostic dropped;
+            dropped.warning = true;
+            dropped.found = fmt::format("frame {}: {} of {} samples were not finite and were dropped", report.frame,
+                                        report.dropped, report.samples);
+            warn({dropped});
+        }
+        if (report.clamped > 0) {
+            Diagnostic clamped;
+            clamped.warning = true;
+            clamped.found = fmt::format("frame {}: {} values above 65504 were clamped to fit a half float", report.frame,
+                                        report.clamped);
+            warn({clamped});
+        }
+        events_.frame_done(report);
+    }
+}
+
+void RenderJob::finish() {
+    delivery_->finish();
+    report_written();
+    if (video_) summary_.video = video_->file;
+    summary_.times.write = delivery_->write_s();
+    summary_.times.encode = delivery_->encode_s();
+    summary_.times.total = total_.seconds();
+    if (summary_.times.trace > 0) summary_.samples_per_s = summary_.pixel_samples / summary_.times.trace;
+    summary_.peak_memory_bytes = peak_memory_bytes();
+}
+
+RenderSummary RenderJob::run() {
+    warn(loaded_->warnings());
+    open_output();
+    int left = static_cast<int>(loaded_->bound().timing().frames.size());
+    try {
+        for (const int frame : loaded_->bound().timing().frames) {
+            deliver(frame, --left);
+            report_written();
+        }
+        finish();
+    } catch (...) {
+        // Complete frames stay: those that are rendered are written, and reported, before the run ends.
+        delivery_->abandon();
+        report_written();
+        throw;
+    }
+    return summary_;
+}
+
+}  // namespace
+
+RenderSummary render_shot(const RenderOptions& options, const RenderEvents& events) {
+    return RenderJob(options, events).run();
+}
+
+}  // namespace kadr
