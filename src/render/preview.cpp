@@ -5,6 +5,7 @@
 
 #include "output/frame_writer.h"
 #include "output/image_io.h"
+#include "render/environment_image.h"
 #include "render/frame_identity.h"
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
@@ -51,7 +52,7 @@ FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& eve
     const LoadedShot loaded(preview_shot(options.render));
     for (const Diagnostic& warning : loaded.warnings()) events.warning(warning);
     const DeviceChoice choice = make_device(options.render.device);
-    choice.device->load(loaded.scene());
+    load_device(*choice.device, loaded);
     FrameRenderer renderer(*choice.device);
 
     const FrameTime time = preview_time(options, loaded.bound());

@@ -10,6 +10,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/delivery.h"
+#include "render/environment_image.h"
 #include "render/frame_identity.h"
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
@@ -118,7 +119,7 @@ bool RenderJob::is_complete(const std::vector<std::filesystem::path>& files, con
 void RenderJob::load_device() {
     if (device_loaded_) return;
     const Stopwatch watch;
-    device_.device->load(loaded_->scene());
+    kadr::load_device(*device_.device, *loaded_);
     summary_.times.scene += watch.seconds();
     device_loaded_ = true;
 }

@@ -12,6 +12,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "output/view.h"
+#include "render/environment_image.h"
 #include "render/frame_renderer.h"
 #include "render/image_checks.h"
 #include "render/loaded_shot.h"
@@ -68,7 +69,7 @@ public:
           choice_(make_device(request)),
           renderer_(*choice_.device),
           view_(loaded_.shot().view) {
-        choice_.device->load(loaded_.scene());
+        load_device(*choice_.device, loaded_);
         const std::vector<int>& frames = loaded_.bound().timing().frames;
         if (view_.automatic)
             view_.exposure_stops = meter_exposure(loaded_.shot(), loaded_.scene(), renderer_, time_of(frames.front()));

@@ -1,0 +1,53 @@
+#include "render/fake_device.h"
+
+namespace kadr {
+namespace {
+
+/// A gradient that differs from frame to frame and, a little, from seed to seed.
+class FakeDevice : public Device {
+public:
+    std::string name() const override { return "fake (no lanes, 1 threads)"; }
+    void load(const Scene&, const Image*) override {}
+    void set_frame(const SceneSnapshot& snapshot) override {
+        frame_ = snapshot.frame_number;
+        seed_ = snapshot.settings.seed;
+        statistics_ = {};
+    }
+    void render(const Pass& pass, Film& film) override {
+        FakeDeviceScript& script = fake_device();
+        if (script.before_render) script.before_render(script.renders);
+        ++script.renders;
+        script.passes.push_back(pass);
+        for (int y = 0; y < film.height(); ++y)
+            for (int x = 0; x < film.width(); ++x) add(film, x, y, pass.sample_count, script.scale);
+        statistics_.pixel_samples += static_cast<std::uint64_t>(film.width()) * film.height() * pass.sample_count;
+        if (pass.progress) pass.progress(1);
+    }
+    DeviceStatistics statistics() const override { return statistics_; }
+
+private:
+    void add(Film& film, int x, int y, int count, float scale) const {
+        const float value = scale * static_cast<float>(x + y + frame_ + 0.01 * seed_) / 64.0f;
+        Film::Beauty& beauty = film.beauty(x, y);
+        beauty.r += count * value;
+        beauty.g += count * value * 0.5f;
+        beauty.b += count * 0.25f * scale;
+        beauty.alpha += static_cast<float>(count);
+        film.samples(x, y) += count;
+    }
+    int frame_ = 0;
+    unsigned seed_ = 0;
+    DeviceStatistics statistics_;
+};
+
+}  // namespace
+
+FakeDeviceScript& fake_device() {
+    static FakeDeviceScript script;
+    return script;
+}
+
+DeviceChoice make_device(const DeviceRequest&) { return {std::make_unique<FakeDevice>(), "a test asked for it"}; }
+std::vector<DeviceReport> list_devices() { return {{"fake", "nothing", true, ""}}; }
+
+}  // namespace kadr

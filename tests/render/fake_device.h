@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+
+#include "device/device.h"
+
+namespace kadr {
+
+/// What the fake device does; set by a test before it renders.
+struct FakeDeviceScript {
+    int renders = 0;                                  ///< calls of render() so far
+    std::vector<Pass> passes;                         ///< as they came
+    std::function<void(int render)> before_render;    ///< called with the count so far
+    float scale = 1;                                  ///< times the gradient
+};
+FakeDeviceScript& fake_device();
+
+}  // namespace kadr

@@ -1,0 +1,237 @@
+#include "render/render_job.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "output/frame_writer.h"
+#include "output/image_io.h"
+#include "render/fake_device.h"
+#include "render/tiny_shot.h"
+
+namespace kadr {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* kPng = "  frames: out/{name}.{frame:04}.png\n";
+constexpr const char* kExr = "  frames: out/{name}.{frame:04}.exr\n";
+
+class RenderJobTest : public testing::Test {
+protected:
+    void SetUp() override {
+        fake_device() = {};
+        interrupt_requested() = false;
+        use(kPng);
+        events_.frame_done = [this](const FrameReport& report) { reports_.push_back(report); };
+        events_.warning = [this](const Diagnostic& warning) { warnings_.push_back(warning.found); };
+    }
+    void TearDown() override { interrupt_requested() = false; }
+    void use(const std::string& output) { options_.shot = write_tiny_shot(folder_.path(), output); }
+    RenderSummary run() {
+        reports_.clear();
+        fake_device().renders = 0;
+        return render_shot(options_, events_);
+    }
+    fs::path file(const std::string& name) const { return folder_.path() / "out" / name; }
+    std::vector<int> done() const {
+        std::vector<int> frames;
+        for (const FrameReport& report : reports_) frames.push_back(report.frame);
+        return frames;
+    }
+    /// Names in the output folder that are not frames.
+    std::vector<std::string> leftovers() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_.path() / "out"))
+            if (entry.path().filename().string().rfind(".kadr", 0) == 0) names.push_back(entry.path().filename());
+        return names;
+    }
+
+    TemporaryFolder folder_;
+    RenderOptions options_;
+    RenderEvents events_;
+    std::vector<FrameReport> reports_;
+    std::vector<std::string> warnings_;
+};
+
+TEST_F(RenderJobTest, RendersEveryFrameInOrder) {
+    const RenderSummary summary = run();
+    EXPECT_EQ(summary.frames, 4);
+    EXPECT_EQ(summary.reused, 0);
+    EXPECT_EQ(summary.device_why, "a test asked for it");
+    EXPECT_EQ(summary.pixel_samples, 4u * 12 * 8 * 4);
+    EXPECT_THAT(done(), ElementsAre(0, 1, 2, 3));
+    for (const char* name : {"tiny.0000.png", "tiny.0001.png", "tiny.0002.png", "tiny.0003.png"})
+        EXPECT_TRUE(fs::exists(file(name))) << name;
+    EXPECT_TRUE(leftovers().empty());
+}
+
+TEST_F(RenderJobTest, SaysInTheFileWhatItIs) {
+    run();
+    Metadata metadata = image_io().read_metadata(file("tiny.0003.png"));
+    EXPECT_EQ(metadata["shot"], "tiny");
+    EXPECT_EQ(metadata["frame"], "3");
+    EXPECT_EQ(metadata["time"], "0.125");
+    EXPECT_EQ(metadata["samples"], "4");
+    EXPECT_EQ(metadata["device"], "fake") << "neither threads nor lanes";
+    EXPECT_EQ(metadata["settings"].size(), 32u);
+}
+
+TEST_F(RenderJobTest, ReusesWhatIsComplete) {
+    run();
+    const RenderSummary again = run();
+    EXPECT_EQ(again.reused, 4);
+    EXPECT_EQ(fake_device().renders, 0);
+    EXPECT_THAT(done(), ElementsAre(0, 1, 2, 3));
+    EXPECT_TRUE(reports_[0].reused);
+}
+
+TEST_F(RenderJobTest, RendersAnewWhatIsMissingOrDamaged) {
+    run();
+    fs::remove(file("tiny.0001.png"));
+    fs::resize_file(file("tiny.0002.png"), fs::file_size(file("tiny.0002.png")) / 2);
+    EXPECT_EQ(run().reused, 2);
+    EXPECT_EQ(fake_device().renders, 2);
+}
+
+TEST_F(RenderJobTest, RendersAnewWhenSettingsChange) {
+    run();
+    options_.overrides.samples = 8;
+    EXPECT_EQ(run().reused, 0);
+    options_.overrides.set = {{"view.exposure", "1"}};
+    EXPECT_EQ(run().reused, 0) << "a display-referred file depends on the view";
+}
+
+TEST_F(RenderJobTest, LinearFilesDoNotDependOnTheView) {
+    use(kExr);
+    run();
+    options_.overrides.set = {{"view.exposure", "1"}};
+    EXPECT_EQ(run().reused, 4);
+}
+
+TEST_F(RenderJobTest, NeitherTheRangeNorCommentsNorThreadsChangeAFrame) {
+    run();
+    options_.overrides.frames = "1-2";
+    options_.device.threads = 7;
+    std::ofstream(options_.shot, std::ios::app) << "# a comment\n";
+    EXPECT_EQ(run().reused, 2);
+    EXPECT_THAT(done(), ElementsAre(1, 2));
+}
+
+TEST_F(RenderJobTest, AssetsChangeAFrame) {
+    run();
+    std::ofstream(folder_.path() / "triangle.gltf", std::ios::app) << "\n";
+    EXPECT_EQ(run().reused, 0);
+}
+
+TEST_F(RenderJobTest, OverwriteRendersAll) {
+    run();
+    options_.overwrite = true;
+    EXPECT_EQ(run().reused, 0);
+}
+
+TEST_F(RenderJobTest, InterruptKeepsCompleteFrames) {
+    fake_device().before_render = [](int render) {
+        if (render == 2) interrupt_requested() = true;
+    };
+    EXPECT_THROW(run(), Interrupted);
+    EXPECT_THAT(done(), ElementsAre(0, 1));
+    EXPECT_TRUE(fs::exists(file("tiny.0001.png")));
+    EXPECT_FALSE(fs::exists(file("tiny.0002.png")));
+    EXPECT_TRUE(leftovers().empty());
+    interrupt_requested() = false;
+    fake_device().before_render = {};
+    EXPECT_EQ(run().reused, 2);
+}
+
+TEST_F(RenderJobTest, AFailingDeviceEndsTheRunAndKeepsCompleteFrames) {
+    fake_device().before_render = [](int render) {
+        if (render == 1) throw RenderError("the device fell over");
+    };
+    EXPECT_THROW(run(), RenderError);
+    EXPECT_THAT(done(), ElementsAre(0));
+}
+
+TEST_F(RenderJobTest, AnUnwritableFolderIsKnownBeforeTheFirstRay) {
+    use("  frames: /dev/null/{name}.{frame:04}.png\n");
+    try {
+        run();
+        FAIL() << "nothing was thrown";
+    } catch (const RenderError& error) {
+        EXPECT_STREQ(error.what(), "cannot write to the folder /dev/null: /dev/null is not a folder");
+    }
+    EXPECT_EQ(fake_device().renders, 0);
+}
+
+TEST_F(RenderJobTest, MetersTheShotsFirstFrameWhateverIsRendered) {
+    options_.overrides.set = {{"view.exposure", "auto"}};
+    run();
+    const Image whole = image_io().read(file("tiny.0003.png"));
+    options_.overwrite = true;
+    options_.overrides.frames = "3";
+    run();
+    EXPECT_EQ(image_io().read(file("tiny.0003.png")).pixels, whole.pixels);
+}
+
+std::string bytes_of(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class Videos : public RenderJobTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Videos, AResumedVideoEqualsAnUninterruptedOne) {
+    use(GetParam());
+    options_.overrides.video = (folder_.path() / "out/tiny.mkv").string();
+    options_.overrides.set = {{"output.video.codec", "ffv1"}};
+    run();
+    const std::string whole = bytes_of(file("tiny.mkv"));
+    ASSERT_GT(whole.size(), 100u);
+    const char* extension = std::string(GetParam()).find("exr") != std::string::npos ? ".exr" : ".png";
+    fs::remove(file(std::string("tiny.0002") + extension));
+    fs::remove(file("tiny.mkv"));
+    EXPECT_EQ(run().reused, 3);
+    EXPECT_EQ(bytes_of(file("tiny.mkv")), whole);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Videos, testing::Values(kPng, kExr));
+
+TEST_F(RenderJobTest, ADefaultVideoIsForShotsWithoutOne) {
+    options_.default_video = (folder_.path() / "out/{name}.mkv").string();
+    EXPECT_EQ(run().video, file("tiny.mkv"));
+    EXPECT_TRUE(fs::exists(file("tiny.mkv")));
+}
+
+TEST_F(RenderJobTest, PreviewIsSmallAndNeverPassesForAFrame) {
+    PreviewOptions preview;
+    preview.render = options_;
+    preview.frame = 2;
+    preview.output = file("tiny.0002.png");
+    const FrameReport report = preview_frame(preview, events_);
+    EXPECT_EQ(report.frame, 2);
+    EXPECT_EQ(stored_settings_hash(file("tiny.0002.png")), "");
+    EXPECT_EQ(run().reused, 0);
+}
+
+TEST_F(RenderJobTest, CheckFindsProblemsOfSeveralKindsAtOnceAndWritesNothing) {
+    options_.overrides.output = "/dev/null/{name}.png";
+    options_.overrides.video = "/dev/null/tiny.mp4";
+    options_.overrides.width = 13;
+    options_.overrides.height = 9;
+    try {
+        check_shot(options_.shot, options_.overrides);
+        FAIL() << "nothing was thrown";
+    } catch (const InputError& error) {
+        std::string all;
+        for (const Diagnostic& problem : error.diagnostics()) all += problem.text() + "\n";
+        EXPECT_THAT(all, HasSubstr("output.frames gives 4 frames one file"));
+        EXPECT_THAT(all, HasSubstr("cannot write to the folder /dev/null"));
+        EXPECT_THAT(all, HasSubstr("13"));
+    }
+    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+}  // namespace
+}  // namespace kadr
