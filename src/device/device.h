@@ -15,6 +15,7 @@ namespace kadr {
 /// Samples [first_sample, first_sample + sample_count) of every pixel.
 struct Pass {
     int first_sample = 0, sample_count = 1;
+    int total_samples = 0;                             ///< of the frame; 1 under `direct`: pixel centres, pinhole, no blur
     const std::atomic<bool>* cancel = nullptr;         ///< set: return early (film is then incomplete)
     std::function<void(double fraction)> progress;     ///< 0..1, called from any thread, rarely
 };

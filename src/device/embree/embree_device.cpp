@@ -1,0 +1,182 @@
+#include "device/embree/embree_device.h"
+
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <xmmintrin.h>
+
+#include "base/error.h"
+#include "device/embree/embree_scene.h"
+#include "device/embree/tile_job.h"
+
+namespace kadr {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Denormals are flushed while a thread traces, as Embree advises, and restored after.
+class FlushDenormals {
+public:
+    FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
+    ~FlushDenormals() { _mm_setcsr(saved_); }
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+private:
+    unsigned saved_;
+};
+
+/// One thread's driver, results and counters.
+struct Worker {
+    std::unique_ptr<TileDriver> driver;
+    std::unique_ptr<TileResult> result = std::make_unique<TileResult>();
+    TileCounters counters;
+    std::uint64_t samples = 0;
+};
+
+class EmbreeDevice final : public Device {
+public:
+    EmbreeDevice(int threads, int width) : width_(width), arena_(threads > 0 ? threads : tbb::task_arena::automatic), device_(rtcNewDevice(nullptr)) {
+        if (!device_) throw RenderError("cannot start Embree");
+        arena_.initialize();
+    }
+
+    std::string name() const override {
+        return fmt::format("cpu (Embree {}.{}.{}, {} lane{}, {} thread{})", rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                           rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MINOR), rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_PATCH),
+                           width_, width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
+    }
+
+    void load(const Scene& scene, const Image* environment) override {
+        const auto begin = std::chrono::steady_clock::now();
+        arena_.execute([&] { scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, environment); });
+        statistics_.load_s = seconds_since(begin);
+    }
+
+    void set_frame(const SceneSnapshot& snapshot) override {
+        const auto begin = std::chrono::steady_clock::now();
+        arena_.execute([&] { scene_->set_frame(snapshot); });
+        kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
+        const double load_s = statistics_.load_s;
+        statistics_ = {};
+        statistics_.load_s = load_s;
+        statistics_.set_frame_s = seconds_since(begin);
+        statistics_.flattened_triangles = scene_->flat_triangles();
+        statistics_.instances = scene_->instance_count();
+        statistics_.moving_instances = scene_->moving_count();
+    }
+
+    void render(const Pass& pass, Film& film) override {
+        const auto begin = std::chrono::steady_clock::now();
+        const kernels::Settings& settings = scene_->view().settings;
+        const int columns = (film.width() + kTileEdge - 1) / kTileEdge, rows = (film.height() + kTileEdge - 1) / kTileEdge;
+        tbb::enumerable_thread_specific<Worker> workers([&] {
+            Worker worker;
+            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, scene_->requirements()) : make_portable_driver(settings.integrator, scene_->requirements()));
+            return worker;
+        });
+        std::atomic<int> done{0};
+        arena_.execute([&] {
+            tbb::parallel_for(0, columns * rows, [&](int tile) {
+                if (pass.cancel && pass.cancel->load(std::memory_order_relaxed)) return;
+                const FlushDenormals flush;
+                render_tile(pass, (tile % columns) * kTileEdge, (tile / columns) * kTileEdge, film, workers.local());
+                const int finished = ++done;
+                if (pass.progress && finished % 16 == 0) pass.progress(static_cast<double>(finished) / (columns * rows));
+            });
+        });
+        for (const Worker& worker : workers) {
+            statistics_.rays += worker.counters.rays;
+            statistics_.dropped_samples += worker.counters.dropped;
+            statistics_.pixel_samples += worker.samples;
+        }
+        statistics_.render_s += seconds_since(begin);
+    }
+
+    DeviceStatistics statistics() const override { return statistics_; }
+
+private:
+    void render_tile(const Pass& pass, int x0, int y0, Film& film, Worker& worker) const {
+        TileJob job;
+        job.scene = &scene_->view();
+        job.flat = scene_->flat();
+        job.instanced = scene_->instanced();
+        job.filter = &filter_;
+        job.x0 = x0;
+        job.y0 = y0;
+        job.x1 = std::min(x0 + kTileEdge, film.width());
+        job.y1 = std::min(y0 + kTileEdge, film.height());
+        job.surface_layers = film.layers().any_surface();
+        job.centred = pass.total_samples == 1 && job.scene->settings.integrator == kernels::IntegratorKind::direct;
+        for (int s = 0; s < pass.sample_count; s += kSamplesPerBatch) {
+            if (pass.cancel && pass.cancel->load(std::memory_order_relaxed)) return;
+            job.first_sample = pass.first_sample + s;
+            job.sample_count = std::min(kSamplesPerBatch, pass.sample_count - s);
+            worker.driver->render(job, *worker.result, worker.counters);
+            accumulate(job, *worker.result, film, worker);
+        }
+    }
+
+    /// Adds a batch to the film, in the order of the samples.
+    static void accumulate(const TileJob& job, const TileResult& r, Film& film, Worker& worker) {
+        int slot = 0;
+        for (int y = job.y0; y < job.y1; ++y)
+            for (int x = job.x0; x < job.x1; ++x)
+                for (int s = 0; s < job.sample_count; ++s, ++slot) {
+                    const float sum = r.radiance[0][slot] + r.radiance[1][slot] + r.radiance[2][slot];
+                    if (!std::isfinite(sum)) {
+                        ++worker.counters.dropped;
+                        continue;
+                    }
+                    ++film.samples(x, y);
+                    ++worker.samples;
+                    Film::Beauty& beauty = film.beauty(x, y);
+                    const float w = r.weight[slot];
+                    beauty.r += r.radiance[0][slot] * w;
+                    beauty.g += r.radiance[1][slot] * w;
+                    beauty.b += r.radiance[2][slot] * w;
+                    beauty.alpha += r.alpha[slot] * w;
+                    if (job.surface_layers) add_surface(r, slot, film.surface(x, y));
+                }
+    }
+
+    static void add_surface(const TileResult& r, int slot, Film::Surface& surface) {
+        for (int c = 0; c < 3; ++c) {
+            surface.albedo[c] += r.albedo[c][slot];
+            surface.normal[c] += r.normal[c][slot];
+        }
+        for (int c = 0; c < 2; ++c) surface.motion[c] += r.motion[c][slot];
+        if (!std::isfinite(r.depth[slot])) return;
+        surface.depth += r.depth[slot];
+        surface.depth_weight += 1;
+    }
+
+    int width_;
+    tbb::task_arena arena_;
+    EmbreeDeviceHandle device_;
+    std::unique_ptr<EmbreeScene> scene_;
+    kernels::FilterTable filter_{};
+    DeviceStatistics statistics_;
+};
+
+}  // namespace
+
+int best_width() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx2") ? 8 : 1;
+#else
+    return 1;
+#endif
+}
+
+std::unique_ptr<Device> make_embree_device(int threads, int width) { return std::make_unique<EmbreeDevice>(threads, width); }
+
+}  // namespace kadr

@@ -1,0 +1,384 @@
+#include "device/embree/embree_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "base/error.h"
+#include "device/embree/alpha_filter.h"
+#include "device/embree/motion_keys.h"
+#include "kernels/light/light.h"
+#include "kernels/scene/motion.h"
+#include "kernels/texture/texture.h"
+
+namespace kadr {
+namespace {
+
+/// Repeated meshes are flattened as well while all copies together stay below this.
+constexpr std::uint64_t kMaxRepeatedTriangles = 1'000'000;
+/// Smallest size of a flattened mesh against its distance from the render origin: below it, floats relative to the origin
+/// would be too coarse for ray offsets, and the mesh keeps its own coordinates.
+constexpr double kMinRelativeSize = 1e-3;
+
+void check(RTCDevice device, const char* action) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw RenderError(fmt::format("cannot {}: out of memory", action));
+    throw RenderError(fmt::format("cannot {}: Embree reports error {}", action, static_cast<int>(error)));
+}
+
+kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
+
+/// Mean luminance of a texture, as an estimate of what a textured emitter sends out.
+float average_luminance(const kernels::Texture* textures, const kernels::TextureSlot& slot) {
+    if (slot.texture < 0) return 1.0f;
+    constexpr int kSteps = 32;
+    float sum = 0;
+    for (int y = 0; y < kSteps; ++y)
+        for (int x = 0; x < kSteps; ++x) {
+            const kernels::Vec4f t = kernels::sample_texture<float>(textures, slot.texture, {(static_cast<float>(x) + 0.5f) / kSteps, (static_cast<float>(y) + 0.5f) / kSteps}, true);
+            sum += kernels::luminance(kernels::Vec3f{t.x, t.y, t.z});
+        }
+    return sum / (kSteps * kSteps);
+}
+
+bool emits(const kernels::Material& m) { return !m.unlit && kernels::luminance(m.emission) > 0; }
+
+bool has_maps(const kernels::Material& m) {
+    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 || m.metallic_roughness_texture.texture >= 0 ||
+           m.normal_texture.texture >= 0 || m.emissive_texture.texture >= 0;
+}
+
+}  // namespace
+
+struct EmbreeScene::BakedGeometry {
+    std::vector<kernels::Vec3f> positions, normals;
+    std::vector<kernels::Vec4f> tangents;
+    std::vector<unsigned> indices;
+
+    /// Copies a geometry to coordinates relative to `origin`.
+    void bake(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin) {
+        const glm::dmat3 linear(world_from_geometry);
+        const glm::dvec3 shift = glm::dvec3(world_from_geometry[3]) - origin;
+        const bool mirrored = glm::determinant(linear) < 0;
+        const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
+        // Embree reads sixteen bytes a vertex: one vertex more than there are.
+        positions.resize(source.positions.size() + 1);
+        for (std::size_t i = 0; i < source.positions.size(); ++i) positions[i] = to_float(linear * to_double(source.positions[i]) + shift);
+        normals.resize(source.normals.size());
+        for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
+        tangents.resize(source.tangents.size());
+        for (std::size_t i = 0; i < tangents.size(); ++i) {
+            const kernels::Vec4f t = source.tangents[i];
+            const glm::dvec3 d = linear * glm::dvec3(t.x, t.y, t.z);
+            const double length = glm::length(d);
+            const kernels::Vec3f v = to_float(length > 0 ? d / length : d);
+            tangents[i] = {v.x, v.y, v.z, mirrored ? -t.w : t.w};
+        }
+        if (!mirrored) return;
+        indices = source.indices;  // a mirror turns the winding round; turn it back, so that the front stays the front
+        for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
+    }
+
+    kernels::Geometry view(const kernels::Geometry& source) const {
+        kernels::Geometry g = source;
+        g.positions = positions.data();
+        if (!normals.empty()) g.normals = normals.data();
+        if (!tangents.empty()) g.tangents = tangents.data();
+        if (!indices.empty()) g.indices = indices.data();
+        return g;
+    }
+};
+
+EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment) : device_(device), scene_(scene) {
+    for (const GeometryData& g : scene.geometries) geometries_.push_back(g.view());
+    for (const TextureData& t : scene.textures) textures_.push_back(t.view());
+    view_.materials = scene.materials.data();
+    view_.textures = textures_.data();
+    if (environment) load_environment(*environment);
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+void EmbreeScene::load_environment(const Image& image) {
+    const std::size_t channels = image.channels.size();
+    environment_texels_.resize(static_cast<std::size_t>(image.width) * image.height);
+    for (std::size_t i = 0; i < environment_texels_.size(); ++i) {
+        const float* p = image.pixels.data() + i * channels;
+        const auto clean = [](float x) { return std::isfinite(x) && x > 0 ? x : 0.0f; };
+        environment_texels_[i] = channels >= 3 ? kernels::Vec3f{clean(p[0]), clean(p[1]), clean(p[2])} : kernels::Vec3f{clean(p[0]), clean(p[0]), clean(p[0])};
+    }
+    environment_marginal_.resize(image.height + 1);
+    environment_conditional_.resize(static_cast<std::size_t>(image.height) * (image.width + 1));
+    kernels::build_environment_tables(environment_texels_.data(), image.width, image.height, environment_marginal_.data(), environment_conditional_.data());
+    environment_map_.texels = environment_texels_.data();
+    environment_map_.width = image.width;
+    environment_map_.height = image.height;
+    environment_map_.marginal = environment_marginal_.data();
+    environment_map_.conditional = environment_conditional_.data();
+    double sum = 0, weight = 0;
+    for (int y = 0; y < image.height; ++y) {
+        const double sine = std::sin((y + 0.5) / image.height * 3.14159265358979);
+        for (int x = 0; x < image.width; ++x) sum += sine * kernels::luminance(environment_texels_[static_cast<std::size_t>(y) * image.width + x]);
+        weight += sine * image.width;
+    }
+    environment_map_.average_luminance = static_cast<float>(sum / weight);
+}
+
+void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
+    view_.settings = snapshot.settings;
+    int* const limits[] = {&view_.settings.max_bounces, &view_.settings.max_diffuse, &view_.settings.max_glossy};
+    for (int* limit : limits) *limit = std::min(*limit, 250);  // a path counts its bounces in eight bits
+    cull_backfaces_ = snapshot.settings.cull_backfaces;
+    camera_keys_ = snapshot.camera_keys;
+    view_.camera = snapshot.camera;
+    view_.camera.keys = camera_keys_.data();
+    view_.camera.key_count = static_cast<int>(camera_keys_.size());
+    const bool same_geometry = have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
+    if (!same_geometry) {
+        const std::vector<bool> flattened = choose_flattened(snapshot);
+        if (!have_frame_ || flattened != flattened_ || snapshot.render_origin != flat_origin_) build_flat(snapshot, flattened);
+        build_instances(snapshot, flattened);
+        flattened_ = flattened;
+        flat_origin_ = snapshot.render_origin;
+        geometry_key_ = snapshot.geometry_key;
+        have_frame_ = true;
+    }
+    view_.geometries = geometries_.data();
+    view_.instances = instances_.data();
+    view_.motions = motions_.data();
+    view_.matrices = matrices_.data();
+    view_.keys = keys_.data();
+    if (!same_geometry) set_emitters(snapshot);
+    set_lights(snapshot);
+    set_requirements();
+}
+
+std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) const {
+    std::vector<std::uint64_t> uses(scene_.geometries.size(), 0);
+    for (const SnapshotInstance& instance : snapshot.instances) uses[instance.geometry] += instance.fixed ? 1 : 0;
+    std::vector<bool> flattened(snapshot.instances.size(), false);
+    for (std::size_t i = 0; i < flattened.size(); ++i) {
+        const SnapshotInstance& instance = snapshot.instances[i];
+        const std::uint64_t triangles = scene_.geometries[instance.geometry].indices.size() / 3;
+        if (!instance.fixed || (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles)) continue;
+        const glm::dmat3 linear(instance.world_from_geometry);
+        const double size = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+        const double distance = glm::length(glm::dvec3(instance.world_from_geometry[3]) - snapshot.render_origin);
+        flattened[i] = size > kMinRelativeSize * distance;
+    }
+    return flattened;
+}
+
+EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geometry, unsigned material) {
+    EmbreeGeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    if (needs_filter(scene_.materials[material], cull_backfaces_)) {
+        rtcSetGeometryIntersectFilterFunction(handle.get(), alpha_filter);
+        rtcSetGeometryOccludedFilterFunction(handle.get(), alpha_filter);
+    }
+    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices, 0, 12, geometry.triangle_count);
+    return handle;
+}
+
+void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
+    flat_.reset(rtcNewScene(device_));
+    baked_.clear();
+    flat_users_.clear();
+    flat_triangles_ = 0;
+    baked_.resize(flattened.size());
+    geometries_.resize(scene_.geometries.size());
+    tbb::parallel_for(std::size_t{0}, flattened.size(), [&](std::size_t i) {
+        if (!flattened[i] || snapshot.instances[i].mask == 0) return;
+        const SnapshotInstance& instance = snapshot.instances[i];
+        baked_[i] = std::make_unique<BakedGeometry>();
+        baked_[i]->bake(scene_.geometries[instance.geometry], instance.world_from_geometry, snapshot.render_origin);
+    });
+    for (std::size_t i = 0; i < baked_.size(); ++i) {
+        if (!baked_[i]) continue;
+        const SnapshotInstance& instance = snapshot.instances[i];
+        const unsigned index = static_cast<unsigned>(geometries_.size());
+        geometries_.push_back(baked_[i]->view(geometries_[instance.geometry]));
+        const kernels::Geometry& geometry = geometries_.back();
+        if (geometry.triangle_count == 0) continue;
+        EmbreeGeometryHandle handle = make_triangles(geometry, instance.material);
+        rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions, 0, 12, geometry.vertex_count);
+        flat_users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, index, instance.material, cull_backfaces_}));
+        rtcSetGeometryUserData(handle.get(), flat_users_.back().get());
+        rtcCommitGeometry(handle.get());
+        rtcAttachGeometryByID(flat_.get(), handle.get(), static_cast<unsigned>(i));
+        flat_triangles_ += geometry.triangle_count;
+    }
+    rtcCommitScene(flat_.get());
+    check(device_, "build the acceleration structure");
+}
+
+RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
+    EmbreeSceneHandle& handle = mesh_scenes_[{geometry_index, material}];
+    if (handle) return handle.get();
+    handle.reset(rtcNewScene(device_));
+    const kernels::Geometry& geometry = geometries_[geometry_index];
+    if (geometry.triangle_count > 0) {
+        EmbreeGeometryHandle triangles = make_triangles(geometry, material);
+        void* vertices = rtcSetNewGeometryBuffer(triangles.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, geometry.vertex_count);
+        check(device_, "allocate a mesh");
+        std::memcpy(vertices, geometry.positions, sizeof(kernels::Vec3f) * geometry.vertex_count);
+        users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, geometry_index, material, cull_backfaces_}));
+        rtcSetGeometryUserData(triangles.get(), users_.back().get());
+        rtcCommitGeometry(triangles.get());
+        rtcAttachGeometry(handle.get(), triangles.get());
+    }
+    rtcCommitScene(handle.get());
+    check(device_, "build the acceleration structure of a mesh");
+    return handle.get();
+}
+
+void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
+    instanced_.reset(rtcNewScene(device_));
+    instance_count_ = moving_count_ = 0;
+    matrices_.clear();
+    keys_.clear();
+    instances_.assign(snapshot.instances.size(), {});
+    motions_.assign(snapshot.instances.size(), {});
+    unsigned next_baked = static_cast<unsigned>(scene_.geometries.size());
+    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
+        const SnapshotInstance& source = snapshot.instances[i];
+        instances_[i] = {source.geometry, source.material, source.id, -1};
+        if (flattened[i]) {
+            if (!baked_[i]) continue;
+            instances_[i].geometry = next_baked++;
+            motions_[i] = {static_cast<unsigned>(matrices_.size()), 1, kernels::InstanceMotion::Kind::still, true};
+            matrices_.push_back({{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
+            continue;
+        }
+        add_instance(snapshot, i);
+    }
+    rtcCommitScene(instanced_.get());
+    check(device_, "build the acceleration structure of the instances");
+}
+
+void EmbreeScene::add_instance(const SceneSnapshot& snapshot, std::size_t index) {
+    const SnapshotInstance& source = snapshot.instances[index];
+    kernels::InstanceMotion& motion = motions_[index];
+    const MotionKeys keys = motion_keys(snapshot.motion, index);
+    motion.identity = false;
+    motion.count = static_cast<unsigned>(keys.linear ? keys.matrices.size() : keys.keys.size());
+    if (keys.linear) {
+        motion.kind = keys.matrices.size() == 1 ? kernels::InstanceMotion::Kind::still : kernels::InstanceMotion::Kind::linear;
+        motion.first = static_cast<unsigned>(matrices_.size());
+        matrices_.insert(matrices_.end(), keys.matrices.begin(), keys.matrices.end());
+    } else {
+        motion.kind = kernels::InstanceMotion::Kind::keys;
+        motion.first = static_cast<unsigned>(keys_.size());
+        keys_.insert(keys_.end(), keys.keys.begin(), keys.keys.end());
+    }
+    if (source.mask == 0 || geometries_[source.geometry].triangle_count == 0) return;
+    EmbreeGeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(handle.get(), mesh_scene(source.geometry, source.material));
+    rtcSetGeometryTimeStepCount(handle.get(), motion.count);
+    for (unsigned k = 0; k < motion.count; ++k) {
+        if (keys.linear) {
+            rtcSetGeometryTransform(handle.get(), k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, keys.matrices[k].m);
+        } else {
+            const RTCQuaternionDecomposition q = to_embree(keys.keys[k]);
+            rtcSetGeometryTransformQuaternion(handle.get(), k, &q);
+        }
+    }
+    rtcCommitGeometry(handle.get());
+    rtcAttachGeometryByID(instanced_.get(), handle.get(), static_cast<unsigned>(index));
+    ++instance_count_;
+    moving_count_ += motion.count > 1 ? 1 : 0;
+}
+
+void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
+    emissive_triangles_.clear();
+    emissive_cdf_.clear();
+    instance_density_.assign(snapshot.instances.size(), 0.0f);
+    std::map<int, float> texture_means;
+    double total = 0;
+    glm::dvec3 centre(0);
+    std::vector<double> cumulative{0.0};
+    std::vector<std::pair<glm::dvec3, double>> places;
+    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
+        const kernels::Material& material = scene_.materials[snapshot.instances[i].material];
+        if (!emits(material) || snapshot.instances[i].mask == 0) continue;
+        const int texture = material.emissive_texture.texture;
+        if (!texture_means.count(texture)) texture_means[texture] = average_luminance(textures_.data(), material.emissive_texture);
+        const double strength = kernels::luminance(material.emission) * texture_means[texture];
+        if (!(strength > 0)) continue;
+        instance_density_[i] = static_cast<float>(strength);
+        const kernels::Geometry& geometry = geometries_[instances_[i].geometry];
+        const kernels::Affine at = kernels::transform_at(view_, static_cast<unsigned>(i), 0.0f);
+        const auto place = [&](unsigned vertex) {
+            const glm::dvec3 p = to_double(geometry.positions[vertex]);
+            glm::dvec3 r;
+            for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
+            return r;
+        };
+        for (unsigned t = 0; t < geometry.triangle_count; ++t) {
+            const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]), c = place(geometry.indices[3 * t + 2]);
+            const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
+            if (!(power > 0)) continue;
+            emissive_triangles_.push_back({static_cast<unsigned>(i), t});
+            total += power;
+            cumulative.push_back(total);
+            places.emplace_back((a + b + c) / 3.0, power);
+            centre += places.back().first * power;
+        }
+    }
+    kernels::LightSet& lights = view_.lights;
+    lights.triangle_count = static_cast<int>(emissive_triangles_.size());
+    lights.emitted_power = static_cast<float>(total);
+    if (total > 0) {
+        for (double c : cumulative) emissive_cdf_.push_back(static_cast<float>(c / total));
+        for (float& d : instance_density_) d = static_cast<float>(d / total);
+        centre /= total;
+        double radius_squared = 1e-12;
+        for (const auto& [p, power] : places) radius_squared += power / total * glm::dot(p - centre, p - centre);
+        lights.emitter_centre = to_float(centre);
+        lights.emitter_radius_squared = static_cast<float>(radius_squared);
+    }
+    lights.triangles = emissive_triangles_.data();
+    lights.triangle_cdf = emissive_cdf_.data();
+    lights.instance_density = instance_density_.data();
+}
+
+void EmbreeScene::set_lights(const SceneSnapshot& snapshot) {
+    light_keys_ = snapshot.light_keys;
+    light_first_.clear();
+    light_count_.clear();
+    kernels::LightSet& lights = view_.lights;
+    lights.visible_count = 0;
+    for (const bool with_surface : {true, false})
+        for (const LightKeys& light : snapshot.lights) {
+            if (kernels::is_delta(light_keys_[light.first]) == with_surface) continue;
+            light_first_.push_back(static_cast<int>(light.first));
+            light_count_.push_back(static_cast<int>(light.count));
+            lights.visible_count += with_surface ? 1 : 0;
+        }
+    lights.keys = light_keys_.data();
+    lights.first = light_first_.data();
+    lights.key_count = light_count_.data();
+    lights.count = static_cast<int>(light_first_.size());
+    lights.environment = snapshot.environment.radiance;
+    lights.environment_visible = snapshot.environment.visible;
+    lights.has_map = !environment_texels_.empty();
+    lights.map = environment_map_;
+    lights.map.factor = snapshot.environment.radiance;
+    lights.map.rotate_rad = snapshot.environment.rotate_rad;
+    lights.map.average_luminance *= kernels::luminance(snapshot.environment.radiance);
+}
+
+void EmbreeScene::set_requirements() {
+    requirements_ = 0;
+    for (const kernels::Instance& instance : instances_)
+        if (has_maps(scene_.materials[instance.material]) || geometries_[instance.geometry].colors) requirements_ |= kernels::requirement::kMaps;
+    if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
+    const kernels::LightSet& lights = view_.lights;
+    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map) requirements_ |= kernels::requirement::kEmitters;
+}
+
+}  // namespace kadr

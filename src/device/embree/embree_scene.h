@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "device/embree/embree_api.h"
+#include "film/film.h"
+#include "frame/snapshot.h"
+#include "kernels/scene/scene_view.h"
+
+namespace kadr {
+
+/// What the filter functions need of a geometry; Embree holds a pointer to it.
+struct GeometryUser {
+    const kernels::SceneView* view = nullptr;
+    unsigned geometry = 0, material = 0;   ///< indices into the view's tables
+    bool cull = false;
+};
+
+/// A scene as Embree and the kernels want it.
+///
+/// What stands still for the whole shot and is not repeated is flattened: its vertices go relative to the render origin
+/// into one scene without instances, where rays are more than twice as cheap. The rest are instances of meshes in their
+/// own coordinates. Geometry is built once a shot, instances when they change.
+class EmbreeScene {
+public:
+    EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment);
+    ~EmbreeScene();
+
+    void set_frame(const SceneSnapshot& snapshot);
+
+    const kernels::SceneView& view() const { return view_; }
+    RTCScene flat() const { return flat_triangles_ > 0 ? flat_.get() : nullptr; }
+    RTCScene instanced() const { return instance_count_ > 0 ? instanced_.get() : nullptr; }
+    unsigned requirements() const { return requirements_; }
+    std::uint64_t flat_triangles() const { return flat_triangles_; }
+    std::uint64_t instance_count() const { return instance_count_; }
+    std::uint64_t moving_count() const { return moving_count_; }
+
+private:
+    struct BakedGeometry;   ///< world-space copy of a geometry, for flattening
+
+    void load_environment(const Image& image);
+    std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
+    void build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
+    void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
+    void add_instance(const SceneSnapshot& snapshot, std::size_t index);
+    RTCScene mesh_scene(unsigned geometry, unsigned material);
+    EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
+    void set_lights(const SceneSnapshot& snapshot);
+    void set_emitters(const SceneSnapshot& snapshot);
+    void set_requirements();
+
+    RTCDevice device_;
+    const Scene& scene_;
+    bool cull_backfaces_ = false;
+
+    // Tables that the view points into.
+    std::vector<kernels::Geometry> geometries_;
+    std::vector<kernels::Texture> textures_;
+    std::vector<kernels::Instance> instances_;
+    std::vector<kernels::InstanceMotion> motions_;
+    std::vector<kernels::Affine> matrices_;
+    std::vector<kernels::TransformKey> keys_;
+    std::vector<kernels::Light> light_keys_;
+    std::vector<int> light_first_, light_count_;
+    std::vector<kernels::EmissiveTriangle> emissive_triangles_;
+    std::vector<float> emissive_cdf_, instance_density_;
+    std::vector<kernels::CameraKey> camera_keys_;
+    std::vector<kernels::Vec3f> environment_texels_;
+    std::vector<float> environment_marginal_, environment_conditional_;
+    kernels::EnvironmentMap environment_map_{};
+    kernels::SceneView view_{};
+
+    std::vector<std::unique_ptr<BakedGeometry>> baked_;
+    std::vector<std::unique_ptr<GeometryUser>> users_;                      ///< of mesh scenes
+    std::vector<std::unique_ptr<GeometryUser>> flat_users_;
+    std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_; ///< by geometry and material
+    EmbreeSceneHandle flat_, instanced_;
+    std::vector<bool> flattened_;          ///< of the frame before
+    glm::dvec3 flat_origin_{0};
+    bool have_frame_ = false;
+    std::uint64_t geometry_key_ = 0, emitter_key_ = 0;
+    unsigned requirements_ = 0;
+    std::uint64_t flat_triangles_ = 0, instance_count_ = 0, moving_count_ = 0;
+};
+
+}  // namespace kadr

@@ -1,0 +1,74 @@
+#include "device/embree/motion_keys.h"
+
+#include <cmath>
+
+#include "frame/decompose.h"
+#include "kernels/scene/motion.h"
+
+namespace kadr {
+namespace {
+
+kernels::TransformKey key_of(const kernels::FrameSrt& frame) {
+    kernels::TransformKey key{};
+    const double half = 0.5 * frame.angle;
+    for (int i = 0; i < 3; ++i) {
+        key.translation[i] = frame.translation[i];
+        key.scale[i] = frame.scale[i];
+        key.rotation[i] = static_cast<float>(frame.axis[i] * std::sin(half));
+    }
+    key.rotation[3] = static_cast<float>(std::cos(half));
+    return key;
+}
+
+kernels::TransformKey key_of(const kernels::FrameMatrix& frame) {
+    glm::dmat4 m(1);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) m[column][row] = frame.matrix[row][column];
+    const Decomposition d = decompose(m);
+    kernels::TransformKey key{};
+    for (int i = 0; i < 3; ++i) {
+        key.translation[i] = static_cast<float>(d.translation[i]);
+        key.scale[i] = static_cast<float>(d.scale[i]);
+        key.shear[i] = static_cast<float>(d.shear[i]);
+    }
+    key.rotation[0] = static_cast<float>(d.rotation.x);
+    key.rotation[1] = static_cast<float>(d.rotation.y);
+    key.rotation[2] = static_cast<float>(d.rotation.z);
+    key.rotation[3] = static_cast<float>(d.rotation.w);
+    return key;
+}
+
+kernels::Affine matrix_of(const kernels::FrameMatrix& frame) {
+    kernels::Affine a;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) a.m[row][column] = frame.matrix[row][column];
+    return a;
+}
+
+}  // namespace
+
+MotionKeys motion_keys(const MotionFrames& motion, std::size_t instance) {
+    const kernels::TransformHeader header = motion.headers[instance];
+    const bool srt = motion.type == MotionFrames::Type::srt;
+    MotionKeys result;
+    result.linear = header.frame_count == 1 || (header.frame_count == 2 && instance < motion.linear.size() && motion.linear[instance]);
+    for (unsigned k = header.first_frame; k < header.first_frame + header.frame_count; ++k) {
+        if (result.linear)
+            result.matrices.push_back(srt ? kernels::compose(key_of(motion.srt[k])) : matrix_of(motion.matrices[k]));
+        else
+            result.keys.push_back(srt ? key_of(motion.srt[k]) : key_of(motion.matrices[k]));
+    }
+    return result;
+}
+
+RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key) {
+    RTCQuaternionDecomposition q;
+    rtcInitQuaternionDecomposition(&q);
+    rtcQuaternionDecompositionSetQuaternion(&q, key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
+    rtcQuaternionDecompositionSetScale(&q, key.scale[0], key.scale[1], key.scale[2]);
+    rtcQuaternionDecompositionSetSkew(&q, key.shear[0], key.shear[1], key.shear[2]);
+    rtcQuaternionDecompositionSetTranslation(&q, key.translation[0], key.translation[1], key.translation[2]);
+    return q;
+}
+
+}  // namespace kadr

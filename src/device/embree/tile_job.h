@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "device/embree/embree_api.h"
+#include "kernels/camera/filter.h"
+#include "kernels/scene/scene_view.h"
+
+namespace kadr {
+
+/// Paths that a tile keeps in flight: enough to fill eight lanes at every depth, few enough for the cache.
+inline constexpr int kTileEdge = 16;              ///< pixels
+inline constexpr int kSamplesPerBatch = 4;        ///< of every pixel of the tile
+inline constexpr int kPathsPerBatch = kTileEdge * kTileEdge * kSamplesPerBatch;
+
+/// What a batch leaves behind, one slot a path: slot = (pixel in the tile) * samples in the batch + sample.
+struct alignas(64) TileResult {
+    float radiance[3][kPathsPerBatch];
+    float weight[kPathsPerBatch];     ///< of the pixel filter (negative lobes); 1 otherwise
+    float alpha[kPathsPerBatch];
+    float albedo[3][kPathsPerBatch], normal[3][kPathsPerBatch];
+    float depth[kPathsPerBatch];      ///< metres along the view axis; infinity for the background
+    float motion[2][kPathsPerBatch];
+};
+
+struct TileCounters {
+    std::uint64_t rays = 0, dropped = 0;
+};
+
+/// What a driver needs of the frame.
+struct TileJob {
+    const kernels::SceneView* scene = nullptr;
+    RTCScene flat = nullptr;           ///< geometry relative to the render origin; null when empty
+    RTCScene instanced = nullptr;      ///< instances; null when empty
+    const kernels::FilterTable* filter = nullptr;
+    int first_sample = 0, sample_count = 0;   ///< of this batch
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;       ///< the tile's pixels
+    bool surface_layers = false;
+    bool centred = false;                     ///< one sample in all: the pixel's centre, a pinhole, the shutter's opening
+};
+
+/// Renders one batch of a tile; one instance per thread (it owns the queues).
+class TileDriver {
+public:
+    virtual ~TileDriver() = default;
+    virtual void render(const TileJob& job, TileResult& result, TileCounters& counters) = 0;
+};
+
+/// @param requirements  set of kernels::requirement bits
+TileDriver* make_portable_driver(kernels::IntegratorKind integrator, unsigned requirements);
+/// Eight lanes; only on processors with AVX2.
+TileDriver* make_avx2_driver(kernels::IntegratorKind integrator, unsigned requirements);
+
+}  // namespace kadr
