@@ -1,0 +1,42 @@
+// The analytic model of the `direct` integrator: single-scattering GGX over Lambert.
+#pragma once
+
+#include "kernels/bsdf/ggx.h"
+
+namespace kadr::kernels {
+
+/// f_r = k_d c / pi + D G F / (4 (n.o)(n.i)), without the cosine.
+///
+/// D: GGX with alpha = max(roughness^2, 1e-3); G: product of Schlick's G1 with k = alpha / 2; F: Schlick over o.h with
+/// f0 = lerp(0.04, base colour, metallic); k_d = (1 - F)(1 - metallic).
+///
+/// @param n   unit, turned to the viewer
+/// @param wo  unit, to the viewer;  wi  unit, to the light.  Zero when the light is behind the surface.
+template <class F>
+SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, Vec3<F> n, Vec3<F> wo, Vec3<F> wi) {
+    const F one(1.0f), zero(0.0f);
+    const F n_o = max(dot(n, wo), zero);
+    const F n_i = dot(n, wi);
+    const Vec3<F> sum = wo + wi;
+    const F sum2 = max(dot(sum, sum), F(1e-20f));
+    const F h_o = F(0.5f) * sqrt(sum2);
+    const F n_sum = dot(n, sum);
+    const Vec3<F> n_cross_sum = cross(n, sum);
+    const F inverse = one / sum2;
+    const F alpha = ggx_alpha(roughness);
+    const F d = ggx_d(dot(n_cross_sum, n_cross_sum) * inverse, n_sum * n_sum * inverse, alpha * alpha);
+    // G / (4 (n.o)(n.i)): the cosines of G1 = n.v / (n.v (1 - k) + k) cancel.
+    const F k = alpha * F(0.5f);
+    const F lobe = F(0.25f) * d / ((n_o * (one - k) + k) * (max(n_i, zero) * (one - k) + k));
+    const F fresnel = schlick_weight(h_o);
+    const F dielectric_share = (one - metallic) * F(kInvPi);
+    const auto channel = [&](F c) {
+        const F f0 = F(0.04f) + (c - F(0.04f)) * metallic;
+        const F f = f0 + (one - f0) * fresnel;
+        return (one - f) * dielectric_share * c + f * lobe;
+    };
+    const Vec3<F> value{channel(base_color.x), channel(base_color.y), channel(base_color.z)};
+    return select(Mask<F>(n_i > zero), value, Vec3<F>{zero, zero, zero});
+}
+
+}  // namespace kadr::kernels

@@ -1,0 +1,175 @@
+// Light from an image around the scene (latitude-longitude), sampled by its brightness.
+//
+// Convention: +y is up, row 0 is the zenith; u = 1/2 + atan2(x, -z) / 2 pi, so the centre of the image is seen along -z and
+// its right half lies towards +x; v = angle from +y / pi. `rotate_rad` turns the image counter-clockwise about +y (seen from above).
+#pragma once
+
+#include "kernels/math/gather.h"
+
+namespace kadr::kernels {
+
+struct EnvironmentMap {
+    const Vec3f* texels = nullptr;       ///< [height][width] linear radiance before `factor`
+    int width = 0, height = 0;
+    const float* marginal = nullptr;     ///< [height + 1] cumulative probability of the rows
+    const float* conditional = nullptr;  ///< [height][width + 1] cumulative probability within a row
+    float rotate_rad = 0;
+    Vec3f factor{1, 1, 1};               ///< colour * strength
+    float average_luminance = 0;         ///< over the sphere, before `factor`; see build_environment_tables
+};
+
+/// arctan(y / x) over all quadrants, in turns (1 is 2 pi), in [-1/2, 1/2]; 0 for (0, 0). Error below 1e-7.
+/// Source of the polynomial: Abramowitz & Stegun 4.4.49.
+template <class F>
+SHARED_FN F atan2_turns(F y, F x) {
+    const F ax = abs(x), ay = abs(y);
+    const F larger = max(ax, ay);
+    const F t = min(ax, ay) / select(Mask<F>(larger > F(0.0f)), larger, F(1.0f));
+    const F t2 = t * t;
+    F p(0.0028662257f);
+    p = p * t2 + F(-0.0161657367f);
+    p = p * t2 + F(0.0429096138f);
+    p = p * t2 + F(-0.0752896400f);
+    p = p * t2 + F(0.1065626393f);
+    p = p * t2 + F(-0.1420889944f);
+    p = p * t2 + F(0.1999355085f);
+    p = p * t2 + F(-0.3333314528f);
+    p = p * t2 + F(1.0f);
+    F a = p * t * F(0.5f * kInvPi);
+    a = select(Mask<F>(ay > ax), F(0.25f) - a, a);
+    a = select(Mask<F>(x < F(0.0f)), F(0.5f) - a, a);
+    return copy_sign(a, y);
+}
+
+/// Image coordinates in [0, 1) x [0, 1] of a unit direction.
+template <class F>
+SHARED_FN Vec2<F> environment_uv(const EnvironmentMap& map, Vec3<F> direction) {
+    const F azimuth = atan2_turns(direction.x, -direction.z) + F(0.5f + map.rotate_rad * (0.5f * kInvPi));
+    // From the sine and the cosine: the inverse cosine alone loses the rows next to the poles.
+    const F sine = sqrt(direction.x * direction.x + direction.z * direction.z);
+    return {min(azimuth - floor(azimuth), F(kOneMinusEpsilon)), atan2_turns(sine, direction.y) * F(2.0f)};
+}
+
+/// Bilinear between the texels' centres; the row wraps around, the columns end at the poles.
+template <class F>
+SHARED_FN Vec3<F> environment_texel(const EnvironmentMap& map, Vec2<F> uv) {
+    const F x = uv.x * F(static_cast<float>(map.width)) - F(0.5f);
+    const F y = uv.y * F(static_cast<float>(map.height)) - F(0.5f);
+    const F left = floor(x), top = floor(y);
+    const F fx = x - left, fy = y - top;
+    const Int<F> column = truncate(left), row = truncate(top), last(map.width - 1), one(1);
+    const Int<F> x0 = select(Mask<F>(column < Int<F>(0)), last, clamp_index<F>(column, 0, map.width - 1));
+    const Int<F> x1 = select(Mask<F>(x0 < last), x0 + one, Int<F>(0));
+    const Int<F> y0 = clamp_index<F>(row, 0, map.height - 1);
+    const Int<F> y1 = clamp_index<F>(row + one, 0, map.height - 1);
+    const float* texels = &map.texels->x;
+    const auto at = [&](Int<F> r, Int<F> c) { return gather_vec3<F>(texels, (r * Int<F>(map.width) + c) * Int<F>(3)); };
+    return lerp(lerp(at(y0, x0), at(y0, x1), fx), lerp(at(y1, x0), at(y1, x1), fx), fy);
+}
+
+/// Radiance from a unit direction.
+template <class F>
+SHARED_FN Vec3<F> environment_radiance(const EnvironmentMap& map, Vec3<F> direction) {
+    return environment_texel(map, environment_uv(map, direction)) * splat<F>(map.factor);
+}
+
+/// Density of a texel's directions, per steradian, from the probabilities that the tables really give it.
+template <class F>
+SHARED_FN F texel_pdf(const EnvironmentMap& map, Int<F> row, Int<F> column, F sine) {
+    const F p_row = gather(map.marginal + 1, row) - gather(map.marginal, row);
+    const Int<F> at = row * Int<F>(map.width + 1) + column;
+    const F p_column = gather(map.conditional + 1, at) - gather(map.conditional, at);
+    const float per_steradian = static_cast<float>(map.width) * static_cast<float>(map.height) * (0.5f * kInvPi * kInvPi);
+    return p_row * p_column * F(per_steradian) / max(sine, F(1e-7f));
+}
+
+/// Density of sample_environment, per steradian; positive wherever the radiance is.
+template <class F>
+SHARED_FN F environment_pdf(const EnvironmentMap& map, Vec3<F> direction) {
+    const Vec2<F> uv = environment_uv(map, direction);
+    const Int<F> column = clamp_index<F>(truncate(uv.x * F(static_cast<float>(map.width))), 0, map.width - 1);
+    const Int<F> row = clamp_index<F>(truncate(uv.y * F(static_cast<float>(map.height))), 0, map.height - 1);
+    return texel_pdf<F>(map, row, column, sqrt(direction.x * direction.x + direction.z * direction.z));
+}
+
+/// A direction drawn by brightness.
+///
+/// @param direction  unit length
+/// @param pdf        per steradian; 0: no sample
+template <class F>
+SHARED_FN void sample_environment(const EnvironmentMap& map, Vec2<F> u, Vec3<F>& direction, Vec3<F>& radiance, F& pdf) {
+    const auto within = [](const float* table, Int<F> i, F x) {
+        const F low = gather(table, i);
+        const F width = gather(table + 1, i) - low;
+        return saturate((x - low) / select(Mask<F>(width > F(0.0f)), width, F(1.0f)));
+    };
+    const Int<F> row = find_interval<F>(map.marginal, Int<F>(0), map.height, u.y);
+    const Int<F> first = row * Int<F>(map.width + 1);
+    const Int<F> at = find_interval<F>(map.conditional, first, map.width, u.x);
+    const Int<F> column = at - first;
+    const F x = (F(column) + within(map.conditional, at, u.x)) * F(1.0f / static_cast<float>(map.width));
+    const F y = (F(row) + within(map.marginal, row, u.y)) * F(1.0f / static_cast<float>(map.height));
+    F sine, cosine, s, c;
+    sincos_2pi(y * F(0.5f), sine, cosine);
+    sine = abs(sine);
+    sincos_2pi(x - F(0.5f), s, c);
+    // Azimuth 0 is -z. The image's rotation is undone with a sine and a cosine common to all lanes.
+    const float turns = map.rotate_rad * (0.5f * kInvPi);
+    float rotate_s, rotate_c;
+    sincos_2pi(turns - __builtin_floorf(turns), rotate_s, rotate_c);
+    const F sin_azimuth = s * F(rotate_c) - c * F(rotate_s);
+    const F cos_azimuth = c * F(rotate_c) + s * F(rotate_s);
+    direction = normalize(Vec3<F>{sine * sin_azimuth, cosine, -sine * cos_azimuth});
+    radiance = environment_texel(map, Vec2<F>{x, y}) * splat<F>(map.factor);
+    pdf = texel_pdf<F>(map, row, column, sine);
+}
+
+/// Mean luminance of a texel's bilinear surface: of its 3 x 3 neighbourhood, with weights 1/8, 3/4, 1/8 each way. Positive
+/// wherever interpolation lets any light into the texel, which is what the density must be.
+SHARED_FN double texel_mean(const Vec3f* texels, int width, int height, int row, int column) {
+    double sum = 0.0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        const int r = row + dy < 0 ? 0 : (row + dy >= height ? height - 1 : row + dy);
+        for (int dx = -1; dx <= 1; ++dx) {
+            const int c = (column + dx + width) % width;
+            const double weight = (dy == 0 ? 0.75 : 0.125) * (dx == 0 ? 0.75 : 0.125);
+            const double y = luminance(texels[static_cast<long>(r) * width + c]);
+            sum += y > 0.0 ? weight * y : 0.0;
+        }
+    }
+    return sum;
+}
+
+
+/// Tables of an image. Once per image, on the host.
+///
+/// @param marginal     [height + 1], out
+/// @param conditional  [height][width + 1], out
+/// @return mean luminance over the sphere: for EnvironmentMap::average_luminance
+SHARED_FN float build_environment_tables(const Vec3f* texels, int width, int height, float* marginal, float* conditional) {
+    double total = 0.0, solid_angle = 0.0;
+    marginal[0] = 0.0f;
+    for (int row = 0; row < height; ++row) {
+        float* cdf = conditional + static_cast<long>(row) * (width + 1);
+        double sum = 0.0;
+        for (int column = 0; column < width; ++column) sum += texel_mean(texels, width, height, row, column);
+        double running = 0.0;
+        cdf[0] = 0.0f;
+        for (int column = 0; column < width; ++column) {
+            running += texel_mean(texels, width, height, row, column);
+            cdf[column + 1] = static_cast<float>(sum > 0.0 ? running / sum : (column + 1.0) / width);
+        }
+        cdf[width] = 1.0f;
+        const double sine = __builtin_sin(3.14159265358979323846 * (row + 0.5) / height);
+        total += sum * sine;
+        solid_angle += width * sine;
+        marginal[row + 1] = static_cast<float>(total);  // in place: a float of a sum in double, scaled below
+    }
+    for (int row = 1; row <= height; ++row) {
+        marginal[row] = total > 0.0 ? static_cast<float>(marginal[row] / total) : static_cast<float>(row) / static_cast<float>(height);
+    }
+    marginal[height] = 1.0f;
+    return static_cast<float>(total / solid_angle);
+}
+
+}  // namespace kadr::kernels
