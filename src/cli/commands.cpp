@@ -10,7 +10,7 @@
 
 #include "cli/reporter.h"
 #include "device/device.h"
-#include "output/image_io.h"
+#include "output/frame_writer.h"
 #include "shot/shot_parser.h"
 
 namespace kadr {
@@ -89,9 +89,7 @@ int run_smoke(const Invocation& invocation) {
 }
 
 int run_info(const Invocation& invocation) {
-    const Metadata metadata = image_io().read_metadata(invocation.file);
-    if (metadata.empty())
-        throw InputError(fmt::format("{} says nothing about itself: Kadr did not write it", invocation.file.string()));
+    const Metadata metadata = describe_image(invocation.file);
     if (invocation.json) {
         print(json_line(nlohmann::ordered_json(metadata)));
         return kDone;

@@ -72,7 +72,11 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (ranges[i].count == 0) continue;
         device_->set_frame(parts[i]);
-        Pass pass{ranges[i].first, ranges[i].count, &interrupt_requested(), {}};
+        Pass pass;
+        pass.first_sample = ranges[i].first;
+        pass.sample_count = ranges[i].count;
+        pass.total_samples = total;
+        pass.cancel = &interrupt_requested();
         if (progress)
             pass.progress = [&, range = ranges[i]](double fraction) {
                 progress((range.first + fraction * range.count) / total);

@@ -35,7 +35,9 @@ constexpr double kQuantisation = 0.002;
 Shot smoke_shot(const fs::path& file, std::uint32_t seed) {
     Shot shot = parse_shot(file);
     shot.image = limited_width(shot.image, kSmokeWidth);
-    shot.render.samples = std::clamp(shot.render.samples, kFewestSamples, kMostSamples);
+    // The analytic model is free of noise with one sample already.
+    const int fewest = shot.render.integrator == Integrator::direct ? 1 : kFewestSamples;
+    shot.render.samples = std::clamp(shot.render.samples, fewest, kMostSamples);
     shot.render.seed = seed;
     return shot;
 }
