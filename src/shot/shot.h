@@ -82,7 +82,7 @@ struct EnvironmentSpec {
     Track<double> strength{1.0};
     Track<double> rotate_rad{0.0};                   ///< about +y
     bool visible = true;                             ///< false: transparent background
-    bool given = false;                              ///< whether the shot has the key (defaults depend on it)
+    bool given = false;                              ///< whether the shot says what it shines: color, image or strength (defaults depend on it)
     bool operator==(const EnvironmentSpec&) const = default;
 };
 

@@ -1,0 +1,96 @@
+// `kadr describe`: the manual of the format, from the schema table.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "shot/schema.h"
+#include "shot/shot_parser.h"
+
+namespace kadr {
+
+namespace {
+
+std::string type_text(const FieldSpec& field) {
+    std::string text = field.forms == 0 ? "any value" : expectation(field);
+    if (field.forms == kSection) text = "a map";
+    if (field.forms & kTrack) text += "; may be a track";
+    return text;
+}
+
+std::string summary(const FieldSpec& field) {
+    if (!field.built) return fmt::format("{} (not supported yet)", field.doc);
+    if (field.required) return fmt::format("{} (required)", field.doc);
+    return *field.fallback ? fmt::format("{} (default: {})", field.doc, field.fallback) : field.doc;
+}
+
+void append_rows(std::string& text, std::string_view section, std::size_t indent) {
+    const auto fields = fields_below(section);
+    std::size_t width = 0;
+    for (const FieldSpec* field : fields) width = std::max(width, key_of(*field).size());
+    for (const FieldSpec* field : fields) {
+        text += fmt::format("{:{}}{:<{}}  {}\n", "", indent, key_of(*field), width, summary(*field));
+        append_rows(text, field->path, indent + 2);
+    }
+}
+
+std::string units_text() {
+    std::string text = "\nUnits (the first is that of a bare number)\n";
+    constexpr std::pair<const char*, Quantity> kRows[] = {
+        {"angles", Quantity::angle}, {"times", Quantity::time}, {"lengths", Quantity::length}, {"lenses and sensors", Quantity::lens},
+        {"pixels", Quantity::pixels}, {"shutter", Quantity::frames}, {"illuminance", Quantity::illuminance}, {"intensity", Quantity::intensity},
+        {"luminance", Quantity::luminance}, {"power", Quantity::power}, {"exposure", Quantity::stops},
+    };
+    for (const auto& [name, quantity] : kRows) text += fmt::format("  {:<18}  {}\n", name, unit_names(quantity));
+    return text;
+}
+
+std::string whole_manual() {
+    std::string text = "The shot file, format version 1. `kadr describe render.samples` tells more about one key.\n\n";
+    append_rows(text, "", 0);
+    text += "\nTracks: a value over time, wherever a field may be keyed\n";
+    append_rows(text, "track", 2);
+    text += "\nKeys of a track with more than a value\n";
+    append_rows(text, "key", 2);
+    text += "\nRotations about an axis\n";
+    append_rows(text, "rotation", 2);
+    return text + units_text();
+}
+
+std::string one_field(const FieldSpec& field) {
+    std::string text = fmt::format("{}\n  {}\n\n", field.path, field.doc);
+    if (!field.built) return text + "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n";
+    text += fmt::format("  type     {}\n", type_text(field));
+    if (const std::string range = range_text(field); !range.empty() && (field.forms & kNumber)) text += fmt::format("  range    {}\n", range);
+    if (field.quantity != Quantity::number && !natural_unit(field.quantity).empty()) text += fmt::format("  units    {}\n", unit_names(field.quantity));
+    if (field.required) text += "  required\n";
+    else if (*field.fallback) text += fmt::format("  default  {}\n", field.fallback);
+    if (*field.example) text += fmt::format("  example  {}\n", field.example);
+    for (const Choice& choice : choices_of(field)) {
+        if (!choice.built) text += fmt::format("  not supported yet: {}\n", choice.name);
+    }
+    if (!fields_below(field.path).empty()) {
+        text += "\n  keys\n";
+        append_rows(text, field.path, 4);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string describe_schema(std::string_view key) {
+    if (key.empty()) return whole_manual();
+    if (const FieldSpec* field = find_field(key)) return one_field(*field);
+    std::vector<std::string> names;
+    for (const FieldSpec& field : schema_table()) names.emplace_back(field.path);
+    const auto nearest = nearest_name(key, names);
+    // A last part alone ("samples") is what people try first.
+    std::vector<std::string> same_key;
+    for (const FieldSpec& field : schema_table()) {
+        if (key_of(field) == key) same_key.emplace_back(field.path);
+    }
+    const std::string advice = !same_key.empty() ? fmt::format("did you mean {}?", fmt::join(same_key, " or ")) : nearest ? fmt::format("did you mean {}?", *nearest) : "`kadr describe` lists all keys";
+    throw InputError(fmt::format("the shot format has no key '{}'", key), advice);
+}
+
+}  // namespace kadr

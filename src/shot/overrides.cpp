@@ -1,0 +1,174 @@
+#include "shot/overrides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/text.h"
+
+namespace kadr {
+
+namespace {
+
+Diagnostic problem_of(const YamlSource& source, std::string found, std::string expected) {
+    return diagnostic_at({&source, -1, 0, 0}, std::move(found), std::move(expected));
+}
+
+YamlNode scalar_node(const YamlSource& source, std::string text, bool quoted) {
+    YamlNode node;
+    node.kind = YamlNode::Kind::scalar;
+    node.text = std::move(text);
+    node.quoted = quoted;
+    node.place = {&source, -1, 0, 0};
+    return node;
+}
+
+YamlNode map_node(const YamlSource& source) {
+    YamlNode node;
+    node.kind = YamlNode::Kind::map;
+    node.place = {&source, -1, 0, 0};
+    return node;
+}
+
+std::vector<std::string> split_path(const std::string& path) {
+    std::vector<std::string> parts(1);
+    for (const char c : path) {
+        if (c == '.') parts.emplace_back();
+        else parts.back() += c;
+    }
+    return parts;
+}
+
+/// Entry of a list by its index or by its id.
+YamlNode* find_item(YamlNode& list, const std::string& part) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+    if (error == std::errc() && end == part.data() + part.size()) return index < list.items.size() ? &list.items[index] : nullptr;
+    for (YamlNode& item : list.items) {
+        const YamlNode* id = item.find("id");
+        if (id && id->text == part) return &item;
+    }
+    return nullptr;
+}
+
+YamlEntry* find_entry(YamlNode& map, const std::string& key) {
+    const auto found = std::find_if(map.entries.begin(), map.entries.end(), [&](const YamlEntry& entry) { return entry.key.text == key; });
+    return found == map.entries.end() ? nullptr : &*found;
+}
+
+std::string item_names(const YamlNode& list) {
+    std::string names;
+    for (std::size_t i = 0; i < list.items.size(); ++i) {
+        const YamlNode* id = list.items[i].find("id");
+        names += fmt::format("{}{}", i == 0 ? "" : ", ", id ? id->text : std::to_string(i));
+    }
+    return names.empty() ? "none" : names;
+}
+
+/// One key path of the command line laid over the document.
+class Override {
+public:
+    Override(const YamlSource& source, std::string path) : source_(source), path_(std::move(path)), parts_(split_path(path_)) {}
+
+    std::optional<Diagnostic> put(YamlNode& root, YamlNode value) {
+        if (std::any_of(parts_.begin(), parts_.end(), [](const std::string& part) { return part.empty(); })) {
+            return problem_of(source_, fmt::format("'{}' is not a key path", path_), "expected a path such as render.samples or lights.key.intensity");
+        }
+        YamlNode* node = &root;
+        for (const std::string& part : parts_) {
+            node = descend(*node, part);
+            if (!node) return problem_;
+        }
+        *node = std::move(value);
+        return std::nullopt;
+    }
+
+private:
+    /// The value under one part of the path; made where a map does not have it yet.
+    YamlNode* descend(YamlNode& node, const std::string& part) {
+        if (node.kind == YamlNode::Kind::null) node = map_node(source_);
+        if (node.is_list()) {
+            YamlNode* item = find_item(node, part);
+            if (!item) problem_ = problem_of(source_, fmt::format("there is no entry '{}'", part), fmt::format("the list has: {}", item_names(node)));
+            return item;
+        }
+        if (!node.is_map()) {
+            problem_ = problem_of(source_, fmt::format("'{}' is below '{}', which is not a section here", part, node.text), "set the whole value instead, for example --set 'render.seed={ value: 7, animated: true }'");
+            return nullptr;
+        }
+        if (YamlEntry* entry = find_entry(node, part)) return &entry->value;
+        node.entries.push_back({scalar_node(source_, part, false), {}});
+        return &node.entries.back().value;
+    }
+
+    const YamlSource& source_;
+    std::string path_;
+    std::vector<std::string> parts_;
+    std::optional<Diagnostic> problem_;
+};
+
+class Overrides {
+public:
+    Overrides(YamlDocument& document, std::filesystem::path folder) : document_(document), folder_(std::move(folder)) {}
+
+    void set(const std::string& path, const std::string& value) {
+        const YamlSource& source = document_.add_source(value, fmt::format("--set {}={}", path, value), folder_, true);
+        try {
+            put(source, path, parse_yaml(source));
+        } catch (const InputError& error) {
+            problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
+        }
+    }
+    /// A value that is taken as it is typed, not as YAML.
+    void put_text(std::string_view option, const std::string& path, const std::string& value, bool quoted) {
+        const YamlSource& source = argument(option, value);
+        put(source, path, scalar_node(source, value, quoted));
+    }
+    void put_size(int width, int height) {
+        const YamlSource& source = argument("--size", fmt::format("{}x{}", width, height));
+        YamlNode list;
+        list.kind = YamlNode::Kind::list;
+        list.place = {&source, -1, 0, 0};
+        for (const int side : {width, height}) list.items.push_back(scalar_node(source, std::to_string(side), false));
+        put(source, "image.size", std::move(list));
+    }
+    /// Replaces the file's video; its codec and quality stay where the new file has the same ending.
+    void put_video(const std::string& file) {
+        YamlNode* output = &document_.root;
+        for (const char* key : {"output", "video"}) {
+            YamlEntry* entry = output && output->is_map() ? find_entry(*output, key) : nullptr;
+            output = entry ? &entry->value : nullptr;
+        }
+        const YamlNode* old = output && output->is_map() ? output->find("file") : nullptr;
+        const bool same_kind = old && std::filesystem::path(old->text).extension() == std::filesystem::path(file).extension();
+        put_text("--video", same_kind ? "output.video.file" : "output.video", file, file != "none");
+    }
+    std::vector<Diagnostic> take_problems() { return std::move(problems_); }
+
+private:
+    const YamlSource& argument(std::string_view option, const std::string& value) { return document_.add_source(value, fmt::format("{} {}", option, value), folder_, true); }
+    void put(const YamlSource& source, const std::string& path, YamlNode value) {
+        if (value.kind == YamlNode::Kind::null) value.place = {&source, -1, 0, 0};
+        if (auto problem = Override(source, path).put(document_.root, std::move(value))) problems_.push_back(std::move(*problem));
+    }
+
+    YamlDocument& document_;
+    std::filesystem::path folder_;
+    std::vector<Diagnostic> problems_;
+};
+
+}  // namespace
+
+std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides, const std::filesystem::path& working_folder) {
+    Overrides apply(document, working_folder);
+    for (const auto& [path, value] : overrides.set) apply.set(path, value);
+    if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);
+    if (!overrides.output.empty()) apply.put_text("--output", "output.frames", overrides.output, true);
+    if (overrides.samples > 0) apply.put_text("--samples", "render.samples", std::to_string(overrides.samples), false);
+    if (overrides.width > 0 && overrides.height > 0) apply.put_size(overrides.width, overrides.height);
+    if (!overrides.video.empty()) apply.put_video(overrides.video);
+    return apply.take_problems();
+}
+
+}  // namespace kadr

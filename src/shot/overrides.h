@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/error.h"
+#include "shot/shot_parser.h"
+#include "shot/yaml_document.h"
+
+namespace kadr {
+
+/// Lays the command line over the document, before anything is validated: the values replace those of the file, and
+/// messages about them name the argument ("--set render.samples=many").
+/// @param working_folder  where relative paths of the command line start
+/// @return what could not be laid over: malformed arguments, list entries that are not there
+std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides, const std::filesystem::path& working_folder);
+
+}  // namespace kadr

@@ -1,0 +1,113 @@
+// render and view.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "shot/section_readers.h"
+
+namespace kadr {
+
+namespace {
+
+/// Full widths at which each filter is usually taken, in the order of FilterKind.
+constexpr std::array<double, 4> kFilterWidths{1, 3, 4, 1.5};
+
+void read_samples(const Section& section, RenderSpec& render) {
+    const Field samples = section["samples"];
+    if (samples && samples.node->is_map()) {
+        section.section("samples");  // its constructor refuses every key by name
+        if (samples.node->entries.empty()) samples.mismatch();
+        return;
+    }
+    assign(render.samples, read_integer(samples));
+}
+
+void read_bounces(const Section& section, RenderSpec& render) {
+    const Field field = section["bounces"];
+    if (!field) return;
+    const Section map = section.section("bounces");
+    const auto total = map.present() ? read_integer(map["total"]) : read_integer(field);
+    if (total) render.bounces.total = render.bounces.diffuse = render.bounces.glossy = render.bounces.transmission = static_cast<int>(*total);
+    assign(render.bounces.diffuse, read_integer(map["diffuse"]));
+    assign(render.bounces.glossy, read_integer(map["glossy"]));
+    assign(render.bounces.transmission, read_integer(map["transmission"]));
+}
+
+void read_filter(const Section& section, RenderSpec& render) {
+    const Field field = section["filter"];
+    if (!field) return;
+    const Section map = section.section("filter");
+    assign(render.filter, read_choice<FilterKind>(map.present() ? map["type"] : field));
+    render.filter_width_px = kFilterWidths[static_cast<std::size_t>(render.filter)];
+    assign(render.filter_width_px, read_number(map["width"]));
+}
+
+std::optional<double> read_limit(const Field& field) {
+    return is_word(field, "none") ? std::nullopt : read_number(field);
+}
+
+void read_seed(const Section& section, RenderSpec& render) {
+    const Field field = section["seed"];
+    if (!field) return;
+    const Section map = section.section("seed");
+    assign(render.seed, read_integer(map.present() ? map["value"] : field));
+    assign(render.seed_animated, read_boolean(map["animated"]));
+}
+
+/// Stops of a camera's exposure value: a factor of 1 / (1.2 * 2^ev100).  Source: Lagarde and de Rousiers, "Moving
+/// Frostbite to PBR", 2014, section 5.1.
+double stops_of_ev100(double ev100) { return -(ev100 + std::log2(1.2)); }
+
+std::optional<double> read_camera_exposure(const Section& exposure) {
+    for (const char* key : {"iso", "time", "f_stop"}) exposure.exclusive("ev100", key);
+    if (exposure.has("ev100")) {
+        const auto ev100 = read_number(exposure["ev100"]);
+        return ev100 ? std::optional(stops_of_ev100(*ev100)) : std::nullopt;
+    }
+    for (const char* key : {"iso", "time", "f_stop"}) {
+        if (!exposure.has(key)) exposure.context().problems.error(exposure.node()->place, fmt::format("{}.{} is missing", exposure.name(), key), "give { ev100 }, or { iso, time, f_stop }");
+    }
+    const auto iso = read_number(exposure["iso"]), time_s = read_number(exposure["time"]), f_stop = read_number(exposure["f_stop"]);
+    if (!iso || !time_s || !f_stop) return std::nullopt;
+    return stops_of_ev100(std::log2(*f_stop * *f_stop / *time_s * 100 / *iso));
+}
+
+void read_exposure(const Section& section, ViewSpec& view) {
+    const Field field = section["exposure"];
+    const Section map = section.section("exposure");
+    if (map.present()) assign(view.exposure_stops, read_camera_exposure(map));
+    else if (is_word(field, "auto")) view.automatic = true;
+    else assign(view.exposure_stops, read_number(field));
+}
+
+}  // namespace
+
+RenderSpec read_render(const Section& shot) {
+    RenderSpec render;
+    const Section section = shot.section("render");
+    const Field integrator = section["integrator"];
+    if (integrator) render.integrator_where = location_of(integrator.node->place);
+    assign(render.integrator, read_choice<Integrator>(integrator));
+    read_samples(section, render);
+    read_bounces(section, render);
+    read_filter(section, render);
+    assign(render.motion_tolerance_px, read_number(section["motion_tolerance"]));
+    const Section clamp = section.section("clamp");
+    render.clamp_direct = read_limit(clamp["direct"]);
+    render.clamp_indirect = read_limit(clamp["indirect"]);
+    read_choice_index(section["denoise"]);
+    read_seed(section, render);
+    assign(render.cull_backfaces, read_boolean(section["cull_backfaces"]));
+    return render;
+}
+
+ViewSpec read_view(const Section& shot) {
+    ViewSpec view;
+    const Section section = shot.section("view");
+    assign(view.transform, read_choice<ViewTransform>(section["transform"]));
+    read_exposure(section, view);
+    return view;
+}
+
+}  // namespace kadr

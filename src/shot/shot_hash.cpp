@@ -1,0 +1,85 @@
+#include "shot/shot_hash.h"
+
+#include <type_traits>
+
+namespace kadr {
+
+namespace {
+
+/// Feeds values of any of the shot's types; the order of calls is the format of what is hashed.
+class Feed {
+public:
+    explicit Feed(Hasher& hasher) : hasher_(hasher) {}
+
+    template <class... Values>
+    void operator()(const Values&... values) {
+        (add(values), ...);
+    }
+
+private:
+    template <class Number>
+        requires std::is_integral_v<Number> || std::is_enum_v<Number>
+    void add(Number value) { hasher_.add(static_cast<std::int64_t>(value)); }
+    void add(double value) { hasher_.add(value); }
+    void add(const std::string& text) { hasher_.add(text); }
+    void add(const Rational& value) { (*this)(value.numerator, value.denominator); }
+    void add(const glm::dvec2& v) { (*this)(v.x, v.y); }
+    void add(const glm::dvec3& v) { (*this)(v.x, v.y, v.z); }
+    void add(const glm::dquat& q) { (*this)(q.x, q.y, q.z, q.w); }
+    void add(const NodeReference& node) { add(node.text); }
+    void add(const Ease& ease) { (*this)(ease[0], ease[1], ease[2], ease[3]); }
+    template <class T>
+    void add(const std::optional<T>& value) {
+        add(value.has_value());
+        if (value) add(*value);
+    }
+    template <class... Ts>
+    void add(const std::variant<Ts...>& value) {
+        add(value.index());
+        std::visit([this](const auto& inside) { add(inside); }, value);
+    }
+    template <class T>
+    void add(const Track<T>& track) {
+        (*this)(track.interpolation, track.keys.size());
+        for (const Key<T>& key : track.keys) (*this)(key.time_s, key.value, key.ease, key.in_tangent, key.out_tangent);
+    }
+    void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
+    void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
+    // The id, because node references name it. Not the path: the content counts, wherever it lies.
+    void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed); }
+    void add(const CameraSpec& c) {
+        (*this)(c.gltf, c.position, c.look_at, c.up, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit, c.f_stop, c.focus, c.blades);
+    }
+    void add(const LightSpec& l) {
+        (*this)(l.kind, l.strength, l.color, l.position, l.look_at, l.direction, l.inner_rad, l.outer_rad, l.range_m, l.falloff, l.radius_m,
+                l.angular_diameter_rad, l.size_m);
+    }
+    void add(const EnvironmentSpec& e) { (*this)(e.image.has_value(), e.color, e.strength, e.rotate_rad, e.visible, e.given); }
+    void add(const RenderSpec& r) {
+        (*this)(r.integrator, r.samples, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission, r.filter, r.filter_width_px,
+                r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed, r.seed_animated, r.cull_backfaces);
+    }
+    template <class T>
+    void add(const std::vector<T>& list) {
+        add(list.size());
+        for (const T& item : list) add(item);
+    }
+
+    Hasher& hasher_;
+};
+
+}  // namespace
+
+void hash_shot(const Shot& shot, Hasher& hasher) {
+    Feed feed(hasher);
+    feed(shot.timing.fps, shot.timing.first, shot.image.width, shot.image.height, shot.image.pixel_aspect);
+    feed(shot.scenes, shot.camera, shot.shutter.open_frames, shot.shutter.close_frames, shot.lights, shot.environment, shot.use_scene_lights);
+    feed(shot.render, shot.output.aovs);
+}
+
+void hash_view(const Shot& shot, Hasher& hasher) {
+    Feed feed(hasher);
+    feed(shot.view.transform, shot.view.exposure_stops, shot.view.automatic, shot.output.png_bits);
+}
+
+}  // namespace kadr

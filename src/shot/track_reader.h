@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+
+#include "anim/track.h"
+#include "shot/section.h"
+#include "shot/shot.h"
+
+namespace kadr {
+
+/// A constant or `{ keys: { time: value }, interpolate: ... }`; keys come back sorted by time.
+std::optional<Track<double>> read_number_track(const Field& field);
+std::optional<Track<glm::dvec2>> read_vector2_track(const Field& field);
+std::optional<Track<glm::dvec3>> read_vector3_track(const Field& field);
+/// As read_vector3_track, and no key's vector may be zero: a direction.
+std::optional<Track<glm::dvec3>> read_direction_track(const Field& field);
+/// One factor or three at each key, none zero.
+std::optional<Track<glm::dvec3>> read_scale_track(const Field& field);
+/// [x, y, z] degrees, a quaternion, `{ axis, angle }`, or a track of the first two.
+std::optional<RotationTrack> read_rotation_track(const Field& field);
+/// A point, a track of points, or a node.
+std::optional<Target> read_target(const Field& field);
+std::optional<NodeReference> read_node(const Field& field);
+
+}  // namespace kadr
