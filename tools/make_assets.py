@@ -233,8 +233,8 @@ def stone_textures():
     u, v = square()
     cloud, grain = fbm(u, v, 3, 3, 4, 21), fbm(u, v, 48, 48, 3, 27)
     pit = step(0.70, fbm(u, v, 24, 40, 2, 33), 0.08)
-    color = mix([0.50, 0.41, 0.30], [0.74, 0.66, 0.53], np.clip(0.75 * cloud + 0.25 * grain, 0, 1)) * (1 - 0.35 * pit[..., None])
-    return color_png(color), normal_png(grain * 0.5 - pit + cloud, 2.2)
+    color = mix([0.42, 0.30, 0.18], [0.66, 0.52, 0.34], np.clip(0.75 * cloud + 0.25 * grain, 0, 1)) * (1 - 0.2 * pit[..., None])
+    return color_png(color), normal_png(grain * 0.5 - 0.7 * pit + cloud, 1.6)
 
 
 def face_textures():
@@ -576,7 +576,7 @@ def robot():
     ceramic_maps, brushed, wood, face = ceramic_textures(), brushed_textures(), wood_textures(), face_textures()
     tex = [g.texture(p) for p in (*ceramic_maps, *brushed, *wood, *face)]
     ceramic = g.material("painted glaze", base=tex[0], metal_rough=tex[1], normal=tex[2])
-    brass = g.material("brushed brass", base=tex[3], metal_rough=tex[4], normal=tex[5], normal_scale=0.6)
+    brass = g.material("brushed brass", base=tex[3], metal_rough=tex[4], normal=tex[5], normal_scale=0.3)
     walnut = g.material("walnut", base=tex[6], metal_rough=tex[7], normal=tex[8], normal_scale=0.7)
     visor = g.material("visor", base=tex[9], roughness=0.07, emissive=(1, 1, 1), emissive_map=tex[10], strength=5)
     glaze = g.material("white glaze", (0.86, 0.83, 0.77), 0, 0.14)
@@ -659,7 +659,7 @@ def studio():
     g = Glb()
     tex = [g.texture(p) for p in tile_textures(4, [0.085, 0.13, 0.14], [0.035, 0.062, 0.07], [0.17, 0.165, 0.155], False, 50)]
     floor = g.material("slate tiles", base=tex[0], metal_rough=tex[1], normal=tex[2])
-    wall = g.material("plaster", (0.33, 0.27, 0.235), 0, 0.85)
+    wall = g.material("plaster", (0.42, 0.175, 0.10), 0, 0.9)
     g.node("Floor", g.mesh("floor", (panel((-6, 0, 4.5), (12, 0, 0), (0, 0, -7.2), (8, 4.8)), floor)))
     bend = np.linspace(0, math.pi / 2, 17)
     profile = np.concatenate([[[0.0, -2.69], [0.03, -2.69]], np.stack([0.04 + 0.9 * (1 - np.cos(bend)), -2.7 - 0.9 * np.sin(bend)], -1), [[5.5, -3.6]]])
@@ -705,7 +705,7 @@ def room():
     lamp = g.material("panel", (0, 0, 0), 0, 1, emissive=(1, 0.87, 0.70), strength=9)
     light_wood = g.material("ash", (0.55, 0.38, 0.22), 0, 0.38)
     china = g.material("china", (0.85, 0.83, 0.80), 0, 0.12)
-    gold = g.material("gold", (1.0, 0.71, 0.29), 1, 0.16)
+    gold = g.material("gold", (1.0, 0.71, 0.29), 1, 0.25)
     navy = g.material("navy cloth", (0.035, 0.06, 0.16), 0, 0.8)
     ochre = g.material("ochre cloth", (0.70, 0.38, 0.06), 0, 0.8)
     paper = g.material("paper", (0.80, 0.76, 0.66), 0, 0.95)
@@ -751,7 +751,11 @@ def room():
         stool = stool + tube(np.linspace((0.13 * math.cos(a), 0.40, 0.13 * math.sin(a)), (0.21 * math.cos(a), 0.0, 0.21 * math.sin(a)), 6), 0.022, 16)
     g.node("Stool", g.mesh("stool", (stool, navy)), (-1.25, 0, 0.55))
     g.node("Globe", g.mesh("globe", (sphere(0.30, 72), china)), (1.35, 0.30, 0.45))
-    g.camera("Camera", (0.0, 1.30, 5.35), (0.0, 1.22, 0), 33)
+    # The camera itself is authored, and animated: it walks in and to the right.
+    camera = g.camera("Camera", (-0.35, 1.30, 4.75), (-0.05, 1.17, 0), 35)
+    g.part("animations", {"name": "walk in", "samplers": [{"input": g.accessor(np.array([0.0, 1.0]), "SCALAR", True),
+           "output": g.accessor(np.array([(-0.35, 1.30, 4.75), (0.25, 1.30, 4.35)]), "VEC3"), "interpolation": "LINEAR"}],
+           "channels": [{"sampler": 0, "target": {"node": camera, "path": "translation"}}]})
     return g.bytes()
 
 
@@ -829,7 +833,7 @@ def street():
     soffit = np.stack([np.stack([ax, ay, np.full(49, z)], -1) for z in (-thick / 2, thick / 2)])
     inward = np.broadcast_to(np.stack([-np.cos(a), -np.sin(a), np.zeros(49)], -1), soffit.shape)
     soffit_uv = np.stack(np.broadcast_arrays(np.linspace(0, 2, 49), np.array([[0.0], [0.3]])), -1)
-    bay = bay + Mesh(soffit, inward, soffit_uv, quads(2, 49)[:, ::-1])
+    bay = bay + Mesh(soffit, inward, soffit_uv, quads(2, 49))
     under = panel((-span / 2, height, -thick / 2), (span / 2 - radius, 0, 0), (0, 0, thick))
     bay = bay + under + under.at((span / 2 + radius, 0, 0))
     # Voussoirs: a moulding that follows the arch.
@@ -865,7 +869,7 @@ def street():
             g.node(f"Keystone {k}", keystone, (x, height + radius + 0.13, 0))
             lanterns.append(g.node(f"Lantern {k}", lantern_mesh, (x, height + radius - 0.72, 0)))
             if k % 2 == 1:
-                g.node(f"Door {k}", door_mesh, (x, 0, -3.14))
+                g.node(f"Door {k}", door_mesh, (x, 0, -3.07))
     g.node("Paving", g.mesh("paving", (panel((-half - 6, 0, 7), (2 * half + 12, 0, 0), (0, 0, -10.2), ((2 * half + 12) / 2.6, 10.2 / 2.6)), paving)))
     g.node("Wall", g.mesh("wall", (panel((-half - 6, 0, -3.2), (2 * half + 12, 0, 0), (0, top + 0.34, 0), ((2 * half + 12) / 3, 1.8)), plaster)))
     g.node("Skirting", g.mesh("skirting", (box((2 * half + 12, 0.5, 0.12), (0, 0.25, -3.16)), stone)))
@@ -889,7 +893,7 @@ def solids():
     g = Glb()
     ground = g.material("ground", (0.42, 0.41, 0.38), 0, 0.7)
     red = g.material("vermilion", (0.78, 0.12, 0.06), 0, 0.35)
-    metal = g.material("steel", (0.62, 0.66, 0.70), 0.9, 0.32)
+    metal = g.material("cobalt", (0.12, 0.30, 0.62), 0.3, 0.36)
     corners = np.array([(0, 1.35, 0), (-0.85, 0, 0.55), (0.85, 0, 0.55), (0, 0, -0.95)], float)
     position, normal = [], []
     for a, b, c in ((0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)):
