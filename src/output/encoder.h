@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "anim/timing.h"
@@ -16,9 +17,10 @@ struct VideoPlan {
     VideoCodec codec = VideoCodec::h264;
     std::string encoder;        ///< ffmpeg's name: "libx264"
     std::string pixel_format;   ///< "yuv420p"
-    std::optional<int> crf;
+    std::optional<int> crf;     ///< filled in for the codecs that have one
     int width = 0, height = 0;
     Rational fps;
+    std::filesystem::path ffmpeg;   ///< the program
 };
 
 /// Checks all that can be known before the first frame: ffmpeg's presence, the encoder, the pixel format, even sizes for

@@ -13,24 +13,42 @@ namespace kadr {
 /// What an image says about itself; written as string attributes "kadr:KEY".
 using Metadata = std::map<std::string, std::string>;
 
+using Bytes = std::vector<unsigned char>;
+
 /// The image library behind an interface: OpenImageIO lives in a module of its own that is opened in the background
 /// (linking it the plain way costs 0.3 s at every start).
 class ImageIo {
 public:
     virtual ~ImageIo() = default;
-    /// Writes exactly to `path` (the caller renames); half for beauty channels and float for layers in EXR, 8 or 16
-    /// bits for PNG, 8 for JPEG. Channels of `image` are already display-referred for PNG and JPEG.
-    /// @throws RenderError
-    virtual void write(const std::filesystem::path& path, const std::string& format, const Image& image, int bits,
-                       const Metadata& metadata) const = 0;
-    /// @throws InputError when it is not an image
+
+    /// The content of an image file.
+    ///
+    /// @param format    "exr", "png", "jpg" or "jpeg"
+    /// @param image     linear for EXR (beauty R, G, B, A becomes half, values beyond ±65504 are clamped; named layers
+    ///                  stay float); display-referred in [0, 1] with premultiplied alpha for PNG and JPEG
+    /// @param bits      8 or 16, of PNG; the others ignore it
+    /// @throws RenderError  when the library refuses; the message says why
+    virtual Bytes encode(const std::string& format, const Image& image, int bits, const Metadata& metadata) const = 0;
+
+    /// Writes the encoded image to exactly `path`, synced; the caller renames. @throws RenderError
+    void write(const std::filesystem::path& path, const std::string& format, const Image& image, int bits,
+               const Metadata& metadata) const;
+
+    /// Values as stored (sRGB-encoded for PNG and JPEG), alpha premultiplied; beauty channels first.
+    /// @throws InputError  when there is no such file, it is not an image, or it is incomplete
     virtual Image read(const std::filesystem::path& path) const = 0;
+
+    /// Empty for an image that Kadr did not write. @throws InputError  when there is no such file or it is not an image
     virtual Metadata read_metadata(const std::filesystem::path& path) const = 0;
+
+    /// Whether the file is an image with nothing missing at its end; cheap (nothing is decoded but the last rows of an EXR).
+    virtual bool is_complete(const std::filesystem::path& path) const = 0;
 };
 
 /// Starts opening the module on another thread; cheap to call again.
 void open_image_io_in_background();
-/// The module, opened now if it is not yet. @throws RenderError naming the file that is missing
+/// The module, opened now if it is not yet. Looked for as KADR_IMAGE_MODULE, then as lib/kadr/kadr_image.so in the folders
+/// above the executable's. @throws RenderError naming the file that is missing
 const ImageIo& image_io();
 
 }  // namespace kadr
