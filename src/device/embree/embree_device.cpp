@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <xmmintrin.h>
@@ -47,6 +48,8 @@ public:
     EmbreeDevice(int threads, int width) : width_(width), arena_(threads > 0 ? threads : tbb::task_arena::automatic), device_(rtcNewDevice(nullptr)) {
         if (!device_) throw RenderError("cannot start Embree");
         arena_.initialize();
+        // TBB caps its workers at the cores there are; more threads than that are asked for explicitly.
+        if (threads > 0) limit_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())));
     }
 
     std::string name() const override {
@@ -160,6 +163,7 @@ private:
     }
 
     int width_;
+    std::unique_ptr<tbb::global_control> limit_;
     tbb::task_arena arena_;
     EmbreeDeviceHandle device_;
     std::unique_ptr<EmbreeScene> scene_;

@@ -269,6 +269,15 @@ private:
         for (; mask; mask &= mask - 1) result_->radiance[0][lane(slot, __builtin_ctz(mask))] = __builtin_nanf("");
     }
 
+    void log(Vec3<F> origin, Vec3<F> direction, F time, F distance, unsigned lanes, bool shadow, bool flat, bool camera) const {
+        const unsigned packet = N == 8 && flat ? static_cast<unsigned>(__builtin_popcount(lanes)) : 1;
+        for (unsigned todo = lanes, left = packet; todo; todo &= todo - 1, left -= packet > 1 ? 1 : 0) {
+            const int i = __builtin_ctz(todo);
+            job_->log(job_->log_user, {{lane(origin.x, i), lane(origin.y, i), lane(origin.z, i)}, {lane(direction.x, i), lane(direction.y, i), lane(direction.z, i)},
+                                       lane(time, i), lane(distance, i), shadow, flat, camera, static_cast<std::uint8_t>(left)});
+        }
+    }
+
     /// Closest hits. `distance` is kInfinity where nothing was met.
     void trace(const PathState<F>& path, unsigned lanes, bool camera, Hit<F>& hit) {
         QueryContext context;
@@ -279,12 +288,14 @@ private:
         hit.instance = Int<F>(0);
         hit.primitive = Int<F>(0);
         hit.u = hit.v = F(0.0f);
+        if (job_->log && job_->flat) log(path.origin, path.direction, path.time, hit.distance, lanes, false, true, camera);
         if constexpr (N == 8) {
             if (job_->flat) trace_packet(path, lanes, context, camera, hit);
         } else {
             if (job_->flat) trace_single(job_->flat, path, lanes, context, camera, hit);
         }
         if constexpr ((R & requirement::kTransforms) != 0) {
+            if (job_->log && job_->instanced) log(path.origin, path.direction, path.time, hit.distance, lanes, false, false, camera);
             if (job_->instanced) trace_single(job_->instanced, path, lanes, context, camera, hit);
         }
     }
@@ -452,6 +463,7 @@ private:
         QueryContext context;
         context.shadow = true;
         for (int i = 0; i < N; ++i) context.transmittance[i] = 1;
+        if (job_->log && job_->flat) log(origin, direction, time, distance, open, true, true, false);
         if (job_->flat) {
             if constexpr (N == 8) {
                 alignas(32) RTCRay8 ray;
@@ -465,6 +477,7 @@ private:
             }
         }
         if constexpr ((R & requirement::kTransforms) != 0) {
+            if (job_->log && job_->instanced) log(origin, direction, time, distance, open, true, false, false);
             if (job_->instanced) open = shadow_single(job_->instanced, origin, direction, time, distance, open, context);
         }
         if (open == 0) return;

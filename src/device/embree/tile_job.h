@@ -28,6 +28,13 @@ struct TileCounters {
     std::uint64_t rays = 0, dropped = 0;
 };
 
+/// A ray as it went to Embree; recorded for the benchmark that replays them.
+struct LoggedRay {
+    float origin[3], direction[3], time, distance;
+    bool shadow, flat, camera;
+    std::uint8_t packet;   ///< rays of the packet that follow this one, itself included; 1: a single ray
+};
+
 /// What a driver needs of the frame.
 struct TileJob {
     const kernels::SceneView* scene = nullptr;
@@ -37,6 +44,8 @@ struct TileJob {
     int first_sample = 0, sample_count = 0;   ///< of this batch
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;       ///< the tile's pixels
     bool surface_layers = false;
+    void (*log)(void* user, const LoggedRay& ray) = nullptr;   ///< null: do not record
+    void* log_user = nullptr;
     bool centred = false;                     ///< one sample in all: the pixel's centre, a pinhole, the shutter's opening
 };
 
