@@ -123,7 +123,8 @@ SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
     };
     const Mask<F> above = wi.z > F(0.0f);
     const F zero(0.0f);
-    const Vec3<F> f_cos{channel(b.f0.x, b.specular_scale.x, b.diffuse.x), channel(b.f0.y, b.specular_scale.y, b.diffuse.y),
+    const Vec3<F> f_cos{channel(b.f0.x, b.specular_scale.x, b.diffuse.x),
+                        channel(b.f0.y, b.specular_scale.y, b.diffuse.y),
                         channel(b.f0.z, b.specular_scale.z, b.diffuse.z)};
     const F pdf = base + (lobe_pdf - base) * b.specular_probability;
     return {select(above, f_cos, Vec3<F>{zero, zero, zero}), select(above, pdf, zero)};

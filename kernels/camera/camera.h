@@ -68,17 +68,17 @@ template <class F>
 SHARED_FN CameraPose<F> camera_key(const Camera& camera, Int<F> key) {
     const float* k = &camera.keys->position.x;
     const Int<F> i = key * Int<F>(11);
-    return {gather_vec3<F>(k, i),
-            {gather(k + 3, i), gather(k + 4, i), gather(k + 5, i), gather(k + 6, i)},
-            gather(k + 7, i), gather(k + 8, i), gather(k + 9, i), gather(k + 10, i)};
+    return {gather_vec3<F>(k, i), {gather(k + 3, i), gather(k + 4, i), gather(k + 5, i), gather(k + 6, i)},
+            gather(k + 7, i),     gather(k + 8, i),
+            gather(k + 9, i),     gather(k + 10, i)};
 }
 
 /// One key for all lanes.
 template <class F>
 SHARED_FN CameraPose<F> camera_key_uniform(const CameraKey& k) {
-    return {splat<F>(k.position),
-            {F(k.rotation[0]), F(k.rotation[1]), F(k.rotation[2]), F(k.rotation[3])},
-            F(k.tan_half_width), F(k.tan_half_height), F(k.lens_radius), F(k.focus_distance)};
+    return {splat<F>(k.position), {F(k.rotation[0]), F(k.rotation[1]), F(k.rotation[2]), F(k.rotation[3])},
+            F(k.tan_half_width),  F(k.tan_half_height),
+            F(k.lens_radius),     F(k.focus_distance)};
 }
 
 template <class F>

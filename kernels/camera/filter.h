@@ -8,12 +8,13 @@ namespace kadr::kernels {
 
 /// One dimension of a separable filter, ready for sampling |f|.
 struct FilterTable {
-    static constexpr int kIntervals = 128;
+    static constexpr int kIntervals = 512;
     FilterKind kind;
-    float radius;                          ///< pixels; half of the full width
-    float inverse_cdf[kIntervals + 1];     ///< |offset| at the fraction 1 - (1 - i/128)^2 of the mass: dense in the tail
-    float negative_beyond;                 ///< |offset| from which the filter is negative; past the radius if nowhere
-    float norm;                            ///< integral of |f| over integral of f, of one dimension
+    float radius;  ///< pixels; half of the full width
+    float inverse_cdf[kIntervals +
+                      1];   ///< |offset| at the fraction 1 - (1 - i/kIntervals)^2 of the mass: dense in the tail
+    float negative_beyond;  ///< |offset| from which the filter is negative; past the radius if nowhere
+    float norm;             ///< integral of |f| over integral of f, of one dimension
 };
 
 /// The filter at distance x of the centre, not normalised. Widths: Gaussian sigma = radius / 3 and 0 at the radius;
@@ -29,7 +30,8 @@ SHARED_FN double filter_value(FilterKind kind, double radius, double x) {
     }
     if (kind == FilterKind::blackman_harris) {
         const double a = 3.14159265358979323846 * (r + 1.0);
-        return 0.35875 - 0.48829 * __builtin_cos(a) + 0.14128 * __builtin_cos(2.0 * a) - 0.01168 * __builtin_cos(3.0 * a);
+        return 0.35875 - 0.48829 * __builtin_cos(a) + 0.14128 * __builtin_cos(2.0 * a) -
+               0.01168 * __builtin_cos(3.0 * a);
     }
     return 1.0;
 }

@@ -1,7 +1,8 @@
 // Light from an image around the scene (latitude-longitude), sampled by its brightness.
 //
-// Convention: +y is up, row 0 is the zenith; u = 1/2 + atan2(x, -z) / 2 pi, so the centre of the image is seen along -z and
-// its right half lies towards +x; v = angle from +y / pi. `rotate_rad` turns the image counter-clockwise about +y (seen from above).
+// Convention: +y is up, row 0 is the zenith; u = 1/2 + atan2(x, -z) / 2 pi, so the centre of the image is seen along -z
+// and its right half lies towards +x; v = angle from +y / pi. `rotate_rad` turns the image counter-clockwise about +y
+// (seen from above).
 #pragma once
 
 #include "kernels/math/gather.h"
@@ -9,13 +10,13 @@
 namespace kadr::kernels {
 
 struct EnvironmentMap {
-    const Vec3f* texels = nullptr;       ///< [height][width] linear radiance before `factor`
+    const Vec3f* texels = nullptr;  ///< [height][width] linear radiance before `factor`
     int width = 0, height = 0;
     const float* marginal = nullptr;     ///< [height + 1] cumulative probability of the rows
     const float* conditional = nullptr;  ///< [height][width + 1] cumulative probability within a row
     float rotate_rad = 0;
-    Vec3f factor{1, 1, 1};               ///< colour * strength
-    float average_luminance = 0;         ///< over the sphere, before `factor`; see build_environment_tables
+    Vec3f factor{1, 1, 1};        ///< colour * strength
+    float average_luminance = 0;  ///< over the sphere, before `factor`; see build_environment_tables
 };
 
 /// arctan(y / x) over all quadrants, in turns (1 is 2 pi), in [-1/2, 1/2]; 0 for (0, 0). Error below 1e-7.
@@ -79,7 +80,8 @@ SHARED_FN F texel_pdf(const EnvironmentMap& map, Int<F> row, Int<F> column, F si
     const F p_row = gather(map.marginal + 1, row) - gather(map.marginal, row);
     const Int<F> at = row * Int<F>(map.width + 1) + column;
     const F p_column = gather(map.conditional + 1, at) - gather(map.conditional, at);
-    const float per_steradian = static_cast<float>(map.width) * static_cast<float>(map.height) * (0.5f * kInvPi * kInvPi);
+    const float per_steradian =
+        static_cast<float>(map.width) * static_cast<float>(map.height) * (0.5f * kInvPi * kInvPi);
     return p_row * p_column * F(per_steradian) / max(sine, F(1e-7f));
 }
 
@@ -124,8 +126,8 @@ SHARED_FN void sample_environment(const EnvironmentMap& map, Vec2<F> u, Vec3<F>&
     pdf = texel_pdf<F>(map, row, column, sine);
 }
 
-/// Mean luminance of a texel's bilinear surface: of its 3 x 3 neighbourhood, with weights 1/8, 3/4, 1/8 each way. Positive
-/// wherever interpolation lets any light into the texel, which is what the density must be.
+/// Mean luminance of a texel's bilinear surface: of its 3 x 3 neighbourhood, with weights 1/8, 3/4, 1/8 each way.
+/// Positive wherever interpolation lets any light into the texel, which is what the density must be.
 SHARED_FN double texel_mean(const Vec3f* texels, int width, int height, int row, int column) {
     double sum = 0.0;
     for (int dy = -1; dy <= 1; ++dy) {
@@ -140,13 +142,13 @@ SHARED_FN double texel_mean(const Vec3f* texels, int width, int height, int row,
     return sum;
 }
 
-
 /// Tables of an image. Once per image, on the host.
 ///
 /// @param marginal     [height + 1], out
 /// @param conditional  [height][width + 1], out
 /// @return mean luminance over the sphere: for EnvironmentMap::average_luminance
-SHARED_FN float build_environment_tables(const Vec3f* texels, int width, int height, float* marginal, float* conditional) {
+SHARED_FN float build_environment_tables(const Vec3f* texels, int width, int height, float* marginal,
+                                         float* conditional) {
     double total = 0.0, solid_angle = 0.0;
     marginal[0] = 0.0f;
     for (int row = 0; row < height; ++row) {
@@ -166,7 +168,8 @@ SHARED_FN float build_environment_tables(const Vec3f* texels, int width, int hei
         marginal[row + 1] = static_cast<float>(total);  // in place: a float of a sum in double, scaled below
     }
     for (int row = 1; row <= height; ++row) {
-        marginal[row] = total > 0.0 ? static_cast<float>(marginal[row] / total) : static_cast<float>(row) / static_cast<float>(height);
+        marginal[row] = total > 0.0 ? static_cast<float>(marginal[row] / total)
+                                    : static_cast<float>(row) / static_cast<float>(height);
     }
     marginal[height] = 1.0f;
     return static_cast<float>(total / solid_angle);

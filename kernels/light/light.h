@@ -46,27 +46,42 @@ SHARED_FN bool is_delta(const Light& light) {
 
 template <class F>
 SHARED_FN LightAt<F> light_uniform(const Light& l) {
-    return {splat<F>(l.radiance), splat<F>(l.position), splat<F>(l.direction), splat<F>(l.axis_u), splat<F>(l.axis_v),
-            F(l.cos_inner), F(l.cos_outer), F(l.inner_rad), F(l.outer_rad), F(l.range), F(l.radius),
-            F(l.cos_angular_radius)};
+    return {splat<F>(l.radiance), splat<F>(l.position), splat<F>(l.direction), splat<F>(l.axis_u),
+            splat<F>(l.axis_v),   F(l.cos_inner),       F(l.cos_outer),        F(l.inner_rad),
+            F(l.outer_rad),       F(l.range),           F(l.radius),           F(l.cos_angular_radius)};
 }
 
 template <class F>
 SHARED_FN LightAt<F> light_gathered(const Light* keys, Int<F> key) {
     const Int<F> i = key * Int<F>(static_cast<int>(sizeof(Light) / sizeof(float)));
-    return {gather_vec3<F>(&keys->radiance.x, i), gather_vec3<F>(&keys->position.x, i),
-            gather_vec3<F>(&keys->direction.x, i), gather_vec3<F>(&keys->axis_u.x, i), gather_vec3<F>(&keys->axis_v.x, i),
-            gather(&keys->cos_inner, i), gather(&keys->cos_outer, i), gather(&keys->inner_rad, i),
-            gather(&keys->outer_rad, i), gather(&keys->range, i), gather(&keys->radius, i),
+    return {gather_vec3<F>(&keys->radiance.x, i),
+            gather_vec3<F>(&keys->position.x, i),
+            gather_vec3<F>(&keys->direction.x, i),
+            gather_vec3<F>(&keys->axis_u.x, i),
+            gather_vec3<F>(&keys->axis_v.x, i),
+            gather(&keys->cos_inner, i),
+            gather(&keys->cos_outer, i),
+            gather(&keys->inner_rad, i),
+            gather(&keys->outer_rad, i),
+            gather(&keys->range, i),
+            gather(&keys->radius, i),
             gather(&keys->cos_angular_radius, i)};
 }
 
 template <class F>
 SHARED_FN LightAt<F> interpolate(const LightAt<F>& a, const LightAt<F>& b, F t) {
-    return {lerp(a.radiance, b.radiance, t), lerp(a.position, b.position, t), normalize(lerp(a.direction, b.direction, t)),
-            lerp(a.axis_u, b.axis_u, t), lerp(a.axis_v, b.axis_v, t), lerp(a.cos_inner, b.cos_inner, t),
-            lerp(a.cos_outer, b.cos_outer, t), lerp(a.inner_rad, b.inner_rad, t), lerp(a.outer_rad, b.outer_rad, t),
-            lerp(a.range, b.range, t), lerp(a.radius, b.radius, t), lerp(a.cos_angular_radius, b.cos_angular_radius, t)};
+    return {lerp(a.radiance, b.radiance, t),
+            lerp(a.position, b.position, t),
+            normalize(lerp(a.direction, b.direction, t)),
+            lerp(a.axis_u, b.axis_u, t),
+            lerp(a.axis_v, b.axis_v, t),
+            lerp(a.cos_inner, b.cos_inner, t),
+            lerp(a.cos_outer, b.cos_outer, t),
+            lerp(a.inner_rad, b.inner_rad, t),
+            lerp(a.outer_rad, b.outer_rad, t),
+            lerp(a.range, b.range, t),
+            lerp(a.radius, b.radius, t),
+            lerp(a.cos_angular_radius, b.cos_angular_radius, t)};
 }
 
 /// The light at a time of the shutter in [0, 1]: its values between two keys, linearly.
@@ -110,7 +125,8 @@ template <class F>
 SHARED_FN F cone_factor(SpotFalloff falloff, const LightAt<F>& l, F cos_angle) {
     const F tiny(1e-6f);  // an inner cone as wide as the outer one is a step
     if (falloff == SpotFalloff::linear) {
-        return saturate((l.outer_rad - acos(clamp(cos_angle, F(-1.0f), F(1.0f)))) / max(l.outer_rad - l.inner_rad, tiny));
+        return saturate((l.outer_rad - acos(clamp(cos_angle, F(-1.0f), F(1.0f)))) /
+                        max(l.outer_rad - l.inner_rad, tiny));
     }
     if (falloff == SpotFalloff::blender) {
         const F blend = F(1.0f) - l.inner_rad / max(l.outer_rad, tiny);
@@ -183,7 +199,8 @@ SHARED_FN LightSample<F> sample_point(const Light& light, const LightAt<F>& l, V
     // Nearer of the two intersections; the square root is half of the chord inside the sphere.
     const F sin2 = local.x * local.x + local.y * local.y;
     const F reach = distance * local.z - safe_sqrt(radius2 - distance2 * sin2);
-    return {normalize(Frame<F>(axis).to_world(local)), reach, intensity * (F(kInvPi) / radius2), cone_pdf(one_minus_cos)};
+    return {normalize(Frame<F>(axis).to_world(local)), reach, intensity * (F(kInvPi) / radius2),
+            cone_pdf(one_minus_cos)};
 }
 
 /// Area of the rectangle, m^2.
@@ -259,7 +276,8 @@ SHARED_FN LightHit<F> intersect_rectangle(const LightAt<F>& l, Vec3<F> origin, V
     const Vec3<F> to_centre = l.position - origin;
     const F distance = -dot(to_centre, l.direction) / select(front, cos_light, F(1.0f));
     const Vec3<F> at = direction * distance - to_centre;
-    const Mask<F> inside = (abs(dot(at, l.axis_u)) <= dot(l.axis_u, l.axis_u)) & (abs(dot(at, l.axis_v)) <= dot(l.axis_v, l.axis_v));
+    const Mask<F> inside =
+        (abs(dot(at, l.axis_u)) <= dot(l.axis_u, l.axis_u)) & (abs(dot(at, l.axis_v)) <= dot(l.axis_v, l.axis_v));
     const F projected = rectangle_area(l) * cos_light;
     const Mask<F> hit = front & inside & (distance > F(0.0f)) & (projected > F(1e-20f));
     return masked_hit<F>(hit, distance, l.radiance, distance * distance / select(hit, projected, F(1.0f)));

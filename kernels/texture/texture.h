@@ -43,8 +43,8 @@ SHARED_FN Vec4f fetch_texel(const Texture& t, int x, int y) {
     }
     constexpr float kScale = 1.0f / 65535.0f;
     const unsigned short* p = static_cast<const unsigned short*>(t.texels) + at;
-    const Vec4f v{static_cast<float>(p[0]) * kScale, static_cast<float>(p[1]) * kScale, static_cast<float>(p[2]) * kScale,
-                  static_cast<float>(p[3]) * kScale};
+    const Vec4f v{static_cast<float>(p[0]) * kScale, static_cast<float>(p[1]) * kScale,
+                  static_cast<float>(p[2]) * kScale, static_cast<float>(p[3]) * kScale};
     if (t.format == TexelFormat::rgba16_linear) return v;
     return {srgb_to_linear(v.x), srgb_to_linear(v.y), srgb_to_linear(v.z), v.w};
 }
@@ -117,7 +117,8 @@ SHARED_FN Vec4<F> sample_texture(const Texture* textures, Int<F> texture, Vec2<F
 template <class F>
 SHARED_FN Vec2<F> apply_transform(const TextureSlot& slot, Vec2<F> uv0, Vec2<F> uv1) {
     const Vec2<F> uv = slot.uv_set == 0 ? uv0 : uv1;
-    return {F(slot.m00) * uv.x + F(slot.m01) * uv.y + F(slot.m02), F(slot.m10) * uv.x + F(slot.m11) * uv.y + F(slot.m12)};
+    return {F(slot.m00) * uv.x + F(slot.m01) * uv.y + F(slot.m02),
+            F(slot.m10) * uv.x + F(slot.m11) * uv.y + F(slot.m12)};
 }
 
 }  // namespace kadr::kernels
