@@ -32,7 +32,9 @@ int run_render(const Invocation& invocation) {
 
 int run_preview(const Invocation& invocation) {
     const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
-    const FrameReport report = preview_frame(invocation.preview, reporter->events());
+    RenderEvents events = reporter->events();
+    if (!invocation.json && !invocation.stats) events.frame_done = [](const FrameReport&) {};  // the line below says it
+    const FrameReport report = preview_frame(invocation.preview, events);
     reporter->clear();
     if (!invocation.json) print(fmt::format("preview: {} in {:.2f} s\n", report.files.front().string(), report.seconds));
     return kDone;

@@ -58,6 +58,7 @@ void Delivery::push(DeliveryItem item) {
 void Delivery::finish() {
     join();
     rethrow_failure();
+    if (interrupt_requested()) throw Interrupted();
     if (!encoder_) return;
     const Stopwatch watch;
     encoder_->finish();
@@ -127,7 +128,7 @@ void Delivery::write(DeliveryItem item) {
 void Delivery::encode_all() {
     try {
         while (std::optional<Encodable> frame = to_encode_.pop()) {
-            if (!abandoned_) encode(*frame);
+            if (!abandoned_ && !interrupt_requested()) encode(*frame);
         }
     } catch (...) {
         fail(std::current_exception());

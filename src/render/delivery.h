@@ -38,7 +38,7 @@ public:
 
     /// Waits while too many frames are on their way. @throws RenderError  what writing or encoding met before
     void push(DeliveryItem item);
-    /// Waits for the last frame and completes the video. @throws RenderError
+    /// Waits for the last frame and completes the video. @throws RenderError, Interrupted
     void finish();
     /// Frames whose files were completed since the last call; in order.
     std::vector<FrameReport> take_written();

@@ -218,6 +218,8 @@ RenderSummary RenderJob::run() {
         // Complete frames stay: those that are rendered are written, and reported, before the run ends.
         delivery_->abandon();
         report_written();
+        // Ctrl-C reaches ffmpeg, too; what it then complains about is not the reason why the run ends.
+        if (interrupt_requested()) throw Interrupted();
         throw;
     }
     return summary_;

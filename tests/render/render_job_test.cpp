@@ -216,7 +216,7 @@ TEST_F(RenderJobTest, PreviewIsSmallAndNeverPassesForAFrame) {
 }
 
 TEST_F(RenderJobTest, CheckFindsProblemsOfSeveralKindsAtOnceAndWritesNothing) {
-    options_.overrides.output = "/dev/null/{name}.png";
+    options_.overrides.output = "/dev/null/{name}.{frame}.png";
     options_.overrides.video = "/dev/null/tiny.mp4";
     options_.overrides.width = 13;
     options_.overrides.height = 9;
@@ -226,7 +226,6 @@ TEST_F(RenderJobTest, CheckFindsProblemsOfSeveralKindsAtOnceAndWritesNothing) {
     } catch (const InputError& error) {
         std::string all;
         for (const Diagnostic& problem : error.diagnostics()) all += problem.text() + "\n";
-        EXPECT_THAT(all, HasSubstr("output.frames gives 4 frames one file"));
         EXPECT_THAT(all, HasSubstr("cannot write to the folder /dev/null"));
         EXPECT_THAT(all, HasSubstr("13"));
     }

@@ -51,7 +51,7 @@ TEST_F(Smoke, GoldenImagesMatchUntilTheImageChanges) {
     EXPECT_TRUE(std::filesystem::exists(golden("0002")));
     for (const SmokeCase& result : run()) {
         EXPECT_TRUE(result.compared);
-        EXPECT_LT(result.flip, 1e-6) << "the same values as written";
+        EXPECT_LT(result.flip, 1e-4) << "n / 255 in floats, twice: an ulp apart, which the cube root of dark colours enlarges";
         EXPECT_TRUE(result.failures.empty());
     }
     fake_device().scale = 0.5f;
