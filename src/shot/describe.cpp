@@ -61,7 +61,6 @@ std::string one_field(const FieldSpec& field) {
     std::string text = fmt::format("{}\n  {}\n\n", field.path, field.doc);
     if (!field.built) return text + "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n";
     text += fmt::format("  type     {}\n", type_text(field));
-    if (const std::string range = range_text(field); !range.empty() && (field.forms & kNumber)) text += fmt::format("  range    {}\n", range);
     if (field.quantity != Quantity::number && !natural_unit(field.quantity).empty()) text += fmt::format("  units    {}\n", unit_names(field.quantity));
     if (field.required) text += "  required\n";
     else if (*field.fallback) text += fmt::format("  default  {}\n", field.fallback);
@@ -76,21 +75,30 @@ std::string one_field(const FieldSpec& field) {
     return text;
 }
 
+/// What somebody may have meant: the nearest path, or else the paths whose last part ("samples") is nearest.
+std::vector<std::string> similar_paths(std::string_view key) {
+    std::vector<std::string> paths, keys, result;
+    for (const FieldSpec& field : schema_table()) {
+        paths.emplace_back(field.path);
+        keys.emplace_back(key_of(field));
+    }
+    const auto path = nearest_name(key, paths);
+    if (path) return {*path};
+    const auto last = nearest_name(key, keys);
+    for (std::size_t i = 0; last && i < keys.size(); ++i) {
+        if (keys[i] == *last) result.push_back(paths[i]);
+    }
+    return result;
+}
+
 }  // namespace
 
 std::string describe_schema(std::string_view key) {
     if (key.empty()) return whole_manual();
     if (const FieldSpec* field = find_field(key)) return one_field(*field);
-    std::vector<std::string> names;
-    for (const FieldSpec& field : schema_table()) names.emplace_back(field.path);
-    const auto nearest = nearest_name(key, names);
-    // A last part alone ("samples") is what people try first.
-    std::vector<std::string> same_key;
-    for (const FieldSpec& field : schema_table()) {
-        if (key_of(field) == key) same_key.emplace_back(field.path);
-    }
-    const std::string advice = !same_key.empty() ? fmt::format("did you mean {}?", fmt::join(same_key, " or ")) : nearest ? fmt::format("did you mean {}?", *nearest) : "`kadr describe` lists all keys";
-    throw InputError(fmt::format("the shot format has no key '{}'", key), advice);
+    const auto similar = similar_paths(key);
+    throw InputError(fmt::format("the shot format has no key '{}'", key),
+                     similar.empty() ? "`kadr describe` lists all keys" : fmt::format("did you mean {}?", fmt::join(similar, " or ")));
 }
 
 }  // namespace kadr

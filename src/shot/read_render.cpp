@@ -16,7 +16,7 @@ constexpr std::array<double, 4> kFilterWidths{1, 3, 4, 1.5};
 void read_samples(const Section& section, RenderSpec& render) {
     const Field samples = section["samples"];
     if (samples && samples.node->is_map()) {
-        section.section("samples");  // its constructor refuses every key by name
+        section.section("samples");  // refuses every key by name
         if (samples.node->entries.empty()) samples.mismatch();
         return;
     }

@@ -87,7 +87,9 @@ std::optional<std::vector<int>> read_frames(const Field& field) {
         return parse_frame_list(frames_text(*field.node));
     } catch (const InputError& error) {
         const Diagnostic& first = error.diagnostics().front();
-        field.error(fmt::format("{} is {}: {}", field.name, frames_text(*field.node), first.found), first.expected.empty() ? "expected " + expectation(*field.spec) : first.expected);
+        const std::string text = frames_text(*field.node), prefix = fmt::format("frames \"{}\": ", text);
+        const std::string found = first.found.starts_with(prefix) ? first.found.substr(prefix.size()) : first.found;
+        field.error(fmt::format("{} is {}: {}", field.name, text, found), first.expected.empty() ? "expected " + expectation(*field.spec) : first.expected);
         return std::nullopt;
     }
 }

@@ -39,14 +39,6 @@ std::string components_text(std::string_view shape, const FieldSpec& field) {
     return range.empty() ? fmt::format("{}", shape) : fmt::format("{}, each {}", shape, range);
 }
 
-std::string choices_text(const FieldSpec& field) {
-    std::vector<std::string> names;
-    for (const Choice& choice : choices_of(field)) {
-        if (choice.built) names.push_back(choice.name);
-    }
-    return names.size() == 1 ? names.front() : fmt::format("one of {}", joined(names, ", "));
-}
-
 using FormText = std::string (*)(const FieldSpec&);
 struct FormRow {
     unsigned form;
@@ -110,6 +102,14 @@ std::vector<Choice> choices_of(const FieldSpec& field) {
         rest = bar == std::string_view::npos ? std::string_view{} : rest.substr(bar + 1);
     }
     return choices;
+}
+
+std::string choices_text(const FieldSpec& field) {
+    std::vector<std::string> names;
+    for (const Choice& choice : choices_of(field)) {
+        if (choice.built) names.push_back(choice.name);
+    }
+    return names.size() == 1 ? names.front() : fmt::format("one of {}", joined(names, ", "));
 }
 
 std::string range_text(const FieldSpec& field) {

@@ -69,6 +69,9 @@ struct Choice {
 };
 std::vector<Choice> choices_of(const FieldSpec& field);
 
+/// "none", "one of direct, path": the choices that are built.
+std::string choices_text(const FieldSpec& field);
+
 /// "0 to 360 deg", "at least 1 px", "more than 0", or empty where anything goes.
 std::string range_text(const FieldSpec& field);
 

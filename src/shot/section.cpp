@@ -93,6 +93,9 @@ std::vector<Diagnostic> Problems::take_errors() {
         if (a_argument != b_argument) return b_argument;
         return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
+    // A value that two readers looked at is wrong only once.
+    const auto same = [](const Error& a, const Error& b) { return a.diagnostic.where == b.diagnostic.where && a.diagnostic.found == b.diagnostic.found; };
+    errors_.erase(std::unique(errors_.begin(), errors_.end(), same), errors_.end());
     std::vector<Diagnostic> result;
     for (Error& error : errors_) {
         if (result.size() == kMostErrors) break;
@@ -106,16 +109,22 @@ std::vector<Diagnostic> Problems::take_errors() {
     return result;
 }
 
-void Field::mismatch(std::string_view advice) const {
-    const bool keyed_constant = node->is_map() && node->find("keys") && !(spec->forms & kTrack);
-    if (keyed_constant) advice = "this value cannot change over time";
-    const std::string expected = with_advice("expected " + expectation(*spec), advice);
-    error(fmt::format("{} is {}", name, shown_value(*node)), with_advice(expected, spec->hint));
+namespace {
+/// A track where the format has a constant.
+bool is_keyed_constant(const Field& field) { return field.node->is_map() && field.node->find("keys") && !(field.spec->forms & kTrack); }
+}  // namespace
+
+void Field::mismatch(std::string_view advice) const { mismatch_with("expected " + expectation(*spec), advice); }
+
+void Field::mismatch_with(std::string expected, std::string_view advice) const {
+    if (is_keyed_constant(*this)) advice = "this value cannot change over time";
+    // The row's hint is about the range; an advice about this very value says more.
+    error(fmt::format("{} is {}", name, shown_value(*node)), with_advice(std::move(expected), advice.empty() ? spec->hint : advice));
 }
 
 std::string shown_value(const YamlNode& node) {
     if (node.is_list()) return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
-    if (node.is_map()) return "a map";
+    if (node.is_map()) return node.entries.empty() ? "an empty map" : "a map";
     if (node.kind == YamlNode::Kind::null) return "empty";
     return looks_like_number(node) ? shortened(node.text) : fmt::format("'{}'", shortened(node.text));
 }
@@ -167,7 +176,9 @@ void Section::check_required() const {
 Section Section::section(std::string_view key) const {
     const Field field = (*this)[key];
     constexpr unsigned kOtherForms = ~(kSection | kTrack);
-    if (field && !field.node->is_map() && !(field.spec->forms & kOtherForms)) field.mismatch();
+    const bool keyed = field && is_keyed_constant(field);
+    if (keyed || (field && !field.node->is_map() && !(field.spec->forms & kOtherForms))) field.mismatch();
+    if (keyed) return Section(*context_, nullptr, path_of(key), name_of(key));
     return Section(*context_, field.node, path_of(key), name_of(key));
 }
 
@@ -265,12 +276,14 @@ std::optional<std::filesystem::path> read_existing_file(const Field& field, cons
 std::optional<int> read_choice_index(const Field& field) {
     if (!field) return std::nullopt;
     const std::vector<Choice> choices = choices_of(*field.spec);
+    // An entry of a list is one of the words, not a list again.
+    const std::string expected = "expected " + (field.spec->forms & kTexts ? choices_text(*field.spec) : expectation(*field.spec));
     std::vector<std::string> names;
     for (const Choice& choice : choices) {
         names.push_back(choice.name);
         if (!field.node->is_scalar() || field.node->text != choice.name) continue;
         if (choice.built) return static_cast<int>(names.size()) - 1;
-        field.error(fmt::format("{}: {} is not supported yet", field.name, choice.name), "expected " + expectation(*field.spec));
+        field.error(fmt::format("{}: {} is not supported yet", field.name, choice.name), expected);
         return std::nullopt;
     }
     if (choices.size() == 1 && field.spec->forms == kChoice) {
@@ -278,7 +291,7 @@ std::optional<int> read_choice_index(const Field& field) {
         return std::nullopt;
     }
     const auto nearest = field.node->is_scalar() ? nearest_name(field.node->text, names) : std::nullopt;
-    field.mismatch(nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+    field.mismatch_with(expected, nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
     return std::nullopt;
 }
 

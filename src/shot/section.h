@@ -52,6 +52,8 @@ struct Field {
     void error(std::string found, std::string expected) const { context->problems.error(node->place, std::move(found), std::move(expected)); }
     /// "<name> is <value>", "expected <what the row says>; <hint>"
     void mismatch(std::string_view advice = {}) const;
+    /// The same with another expectation.
+    void mismatch_with(std::string expected, std::string_view advice = {}) const;
 };
 
 /// A value as messages show it: 540 deg, 'many', a list, a map, empty.

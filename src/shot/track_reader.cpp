@@ -61,7 +61,7 @@ std::optional<ReadKey<T>> read_key(const Field& field, const YamlEntry& entry, R
     ReadKey<T> result{{}, &entry};
     Field value = field.with(entry.value, field.name);
     if (entry.value.is_map()) {
-        const Section section(*field.context, &entry.value, "key", fmt::format("{} at {}", field.name, entry.key.text));
+        const Section section(*field.context, &entry.value, "key", fmt::format("{}.keys.{}", field.name, entry.key.text));
         result.key.ease = read_ease(section["ease"]);
         value.node = section["value"].node;
         if (!value) return std::nullopt;  // reported as missing

@@ -98,7 +98,8 @@ ParsedQuantity parse_quantity(std::string_view text, Quantity quantity) {
     result.unit = name;
     const UnitSpec* unit = find_unit(name.empty() ? natural_unit(quantity) : name, quantity);
     if (!name.empty() && !unit) {
-        const bool is_word = std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '/' || c == '2' || c == '%'; });
+        const bool starts_with_letter = name.front() >= 'A';
+        const bool is_word = starts_with_letter && std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '/' || c == '2' || c == '%'; });
         result.problem = is_word ? Problem::wrong_unit : Problem::not_a_number;
         return result;
     }
