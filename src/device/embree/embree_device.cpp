@@ -35,6 +35,12 @@ private:
     unsigned saved_;
 };
 
+/// TBB caps its workers at the cores there are; more threads than that have to be asked for before an arena starts.
+std::unique_ptr<tbb::global_control> allow_threads(int threads) {
+    if (threads <= tbb::info::default_concurrency()) return nullptr;
+    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+}
+
 /// One thread's driver, results and counters.
 struct Worker {
     std::unique_ptr<TileDriver> driver;
@@ -45,11 +51,9 @@ struct Worker {
 
 class EmbreeDevice final : public Device {
 public:
-    EmbreeDevice(int threads, int width) : width_(width), arena_(threads > 0 ? threads : tbb::task_arena::automatic), device_(rtcNewDevice(nullptr)) {
+    EmbreeDevice(int threads, int width) : width_(width), limit_(allow_threads(threads)), arena_(threads > 0 ? threads : tbb::task_arena::automatic), device_(rtcNewDevice(nullptr)) {
         if (!device_) throw RenderError("cannot start Embree");
         arena_.initialize();
-        // TBB caps its workers at the cores there are; more threads than that are asked for explicitly.
-        if (threads > 0) limit_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())));
     }
 
     std::string name() const override {
