@@ -11,6 +11,7 @@ error  320×180 at 16 and 64 samples, the median of 8 seeds on both sides: RMSE,
 
 The scenes, references and the peers' drivers lie in the folder that KADR_PEERS names (default: ../shared/peers beside the
 repository); --python is an interpreter with bpy, mitsuba, numpy and OpenImageIO. What is missing is named and skipped.
+Mitsuba compiles with the LLVM that DRJIT_LIBLLVM_PATH names; Debian's 14 and 15 cannot compile it for AVX-512, 19 can.
 Writes a JSON report (--output) and prints a table.
 """
 import argparse
@@ -41,6 +42,10 @@ output: {{ frames: "{image}" }}
 """
 
 
+class Failed(Exception):
+    """A renderer ended with an error; the message has its last lines."""
+
+
 def skip(reason):
     print(f"skipped: {reason}")
     sys.exit(0)
@@ -66,7 +71,7 @@ def timed(command):
         out.seek(0), err.seek(0)
         text, errors = out.read(), err.read()
     if child.returncode:
-        raise SystemExit(f"{' '.join(str(x) for x in command)}\n  ended with {child.returncode}:\n{errors[-2000:]}{text[-2000:]}")
+        raise Failed(f"{' '.join(str(x) for x in command)}\n  ended with {child.returncode}:\n{errors[-2000:]}{text[-2000:]}")
     return text, {"wall_s": time.perf_counter() - wall, "cpu_s": usage.ru_utime + usage.ru_stime, "peak_mib": usage.ru_maxrss / 1024}
 
 
@@ -105,8 +110,15 @@ def speed(options, folder):
         runners = {k: v for k, v in runners.items() if k in options.renderers}
         rows = {name: [] for name in runners}
         for round_number in range(options.rounds):
-            for name, runner in runners.items():
-                rows[name].append(runner())
+            for name, runner in list(runners.items()):
+                try:
+                    rows[name].append(runner())
+                except Failed as failed:
+                    if name == "kadr":
+                        raise SystemExit(str(failed))
+                    print(f"skipped {name} on {scene}: {failed}", file=sys.stderr)
+                    del runners[name], rows[name]
+                    continue
                 print(f"  {scene} round {round_number + 1} {name}: {rows[name][-1]['msamples_cpu_s']:.3f}", file=sys.stderr)
         report[scene] = {name: {"rounds": r, **{k: median_of(r, k) for k in r[0]}} for name, r in rows.items()}
     print(f"\nmillion pixel-samples per CPU-second, {size[0]}×{size[1]}, {options.bounces} bounces, {options.samples} samples, median of {options.rounds}")
