@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "shot/shot.h"
 
 namespace kadr {
+
+struct Bindings;
 
 /// Names of the shot bound to the scene once: node references, clips, the frame range where the shot gives none.
 /// Everything `kadr check` can say about a shot and its scenes beyond the shot's own grammar.
@@ -30,6 +33,10 @@ public:
     const std::vector<bool>& fixed_nodes() const { return fixed_; }
     /// Resolved node of a reference, an index into Scene::nodes; -1 for a scene's own root (see scene_of).
     int node_of(const NodeReference& reference) const;
+    /// Resolved scene of a reference, an index into Scene::files.
+    int scene_of(const NodeReference& reference) const;
+    /// What the rest of frame/ reads (frame/bindings.h).
+    const Bindings& bindings() const { return *bindings_; }
 
 private:
     const Shot* shot_;
@@ -37,6 +44,7 @@ private:
     Timing timing_;
     Sequence sequence_;
     std::vector<bool> fixed_;
+    std::shared_ptr<const Bindings> bindings_;  ///< never changes, so copies of a bound shot share it
     std::vector<Diagnostic> warnings_;
 };
 

@@ -1,0 +1,233 @@
+#include "frame/camera_keys.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "frame/bindings.h"
+#include "frame/decompose.h"
+#include "frame/key_grid.h"
+#include "frame/problem.h"
+#include "frame/view_axes.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr double kDefaultFocalMm = 50;
+constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees
+// An interpolated camera has to keep within the tolerance between the times that are checked, too.
+constexpr double kMargin = 0.9;
+
+double aspect_of(const ImageSpec& image) { return image.pixel_aspect * image.width / image.height; }
+
+bool fits_width(const CameraSpec& spec, double aspect) {
+    return spec.fit == CameraSpec::Fit::horizontal || (spec.fit == CameraSpec::Fit::automatic && aspect >= 1);
+}
+
+void set_vertical(CameraState& camera, double tan_half_height, double aspect) {
+    camera.tan_half_height = tan_half_height;
+    camera.tan_half_width = aspect * tan_half_height;
+}
+
+void set_field_of_view(CameraState& camera, const CameraSpec& spec, double aspect, double time_s) {
+    if (spec.vertical_fov_rad) return set_vertical(camera, std::tan(0.5 * evaluate(*spec.vertical_fov_rad, time_s)), aspect);
+    const double focal = spec.focal_length_mm ? evaluate(*spec.focal_length_mm, time_s) : kDefaultFocalMm;
+    if (fits_width(spec, aspect)) return set_vertical(camera, 0.5 * spec.sensor_mm.x / focal / aspect, aspect);
+    set_vertical(camera, 0.5 * spec.sensor_mm.y / focal, aspect);
+}
+
+/// glTF gives the vertical field; the image's aspect decides the horizontal one.
+void set_authored(CameraState& camera, const SceneCamera& source, double aspect) {
+    camera.orthographic = source.orthographic;
+    set_vertical(camera, source.orthographic ? std::abs(source.ymag) : std::tan(0.5 * source.yfov_rad), aspect);
+}
+
+[[noreturn]] void refuse(const CameraSpec& spec, std::string found, std::string expected) {
+    throw InputError(problem_at(spec.where, std::move(found), std::move(expected)));
+}
+
+glm::dvec3 target_of(const BoundShot& shot, double time_s) {
+    const Target& target = shot.shot().camera.look_at;
+    if (const auto* point = std::get_if<Track<glm::dvec3>>(&target)) return evaluate(*point, time_s);
+    return shot.bindings().position_of(std::get<NodeReference>(target), time_s);
+}
+
+CameraState placed_by_shot(const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    CameraState camera;
+    camera.position = evaluate(spec.position, time_s);
+    const glm::dvec3 towards = target_of(shot, time_s) - camera.position;
+    camera.subject_distance = glm::length(towards);
+    const double rounding = 1e-15 * glm::length(camera.position);
+    if (!(camera.subject_distance > rounding) || !std::isfinite(camera.subject_distance))
+        refuse(spec, fmt::format("camera.position and camera.look_at are the same point at {} s", format_number(time_s)),
+               "expected two points: the view has no direction");
+    camera.rotation = look_rotation(towards / camera.subject_distance, evaluate(spec.up, time_s));
+    camera.focus_distance = camera.subject_distance;
+    set_field_of_view(camera, spec, aspect_of(shot.shot().image), time_s);
+    return camera;
+}
+
+CameraState placed_by_node(const BoundShot& shot, double time_s) {
+    const int node = shot.bindings().camera_node;
+    const SceneCamera& source = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].camera)];
+    const glm::dmat4 world = shot.bindings().rig.node_transform(node, time_s);
+    CameraState camera;
+    camera.position = glm::dvec3(world[3]);
+    const glm::dvec3 forward = -glm::dvec3(world[2]);
+    if (!is_finite(world) || !(glm::length(forward) > 0))
+        refuse(shot.shot().camera, fmt::format("the node of camera.gltf has the scale 0 or no place at {} s", format_number(time_s)),
+               "expected a transform with an inverse");
+    // Scale does not belong to a camera (glTF 2.0, 3.10): the directions of the axes are all that counts.
+    camera.rotation = look_rotation(glm::normalize(forward), glm::dvec3(world[1]));
+    // The near plane is the one hint of scale that an authored camera gives; artists put it at a hundredth or less.
+    camera.subject_distance = camera.focus_distance = std::max(1.0, 100 * source.znear);
+    set_authored(camera, source, aspect_of(shot.shot().image));
+    return camera;
+}
+
+void set_focus(CameraState& camera, const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    if (!spec.focus) return;
+    if (const auto* distance = std::get_if<Track<double>>(&*spec.focus)) {
+        camera.focus_distance = evaluate(*distance, time_s);
+    } else {
+        const glm::dvec3 point = shot.bindings().position_of(std::get<NodeReference>(*spec.focus), time_s);
+        camera.focus_distance = glm::dot(point - camera.position, camera.rotation * glm::dvec3(0, 0, -1));
+    }
+    if (spec.gltf) camera.subject_distance = std::max(std::abs(camera.focus_distance), 1e-9);
+}
+
+/// Thin lens: the aperture's diameter is the focal length over the f-stop; the focal length is that of the sensor.
+void set_lens(CameraState& camera, const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    if (!spec.f_stop || camera.orthographic) return;
+    if (!(camera.focus_distance > 0))
+        refuse(spec, fmt::format("camera.focus lies {} m behind the camera at {} s", format_number(-camera.focus_distance), format_number(time_s)),
+               "expected a point in front of it");
+    const bool wide = fits_width(spec, aspect_of(shot.shot().image));
+    const double focal_m = 0.5e-3 * (wide ? spec.sensor_mm.x / camera.tan_half_width : spec.sensor_mm.y / camera.tan_half_height);
+    camera.lens_radius = 0.5 * focal_m / evaluate(*spec.f_stop, time_s);
+}
+
+CameraState between(const CameraState& a, const CameraState& b, double u) {
+    CameraState c = a;
+    c.position = glm::mix(a.position, b.position, u);
+    c.rotation = slerp_shorter(a.rotation, b.rotation, u);
+    c.tan_half_width = std::lerp(a.tan_half_width, b.tan_half_width, u);
+    c.tan_half_height = std::lerp(a.tan_half_height, b.tan_half_height, u);
+    c.lens_radius = std::lerp(a.lens_radius, b.lens_radius, u);
+    c.focus_distance = std::lerp(a.focus_distance, b.focus_distance, u);
+    return c;
+}
+
+/// How far the image of the subject moves between two cameras, in pixels: turned, displaced and zoomed.
+double pixels_between(const CameraState& a, const CameraState& b, int image_height) {
+    const double half_height = 0.5 * image_height;
+    const double moved = glm::distance(a.position, b.position);
+    const double zoomed = std::abs(a.tan_half_height / b.tan_half_height - 1) * half_height;
+    if (a.orthographic) return moved * half_height / b.tan_half_height + zoomed + angle_between(a.rotation, b.rotation) * half_height;
+    const double corner = 1 + b.tan_half_width * b.tan_half_width + b.tan_half_height * b.tan_half_height;
+    const double turned = angle_between(a.rotation, b.rotation) * corner;
+    const double lens = std::abs(a.lens_radius - b.lens_radius) / b.subject_distance;
+    const double focus = b.lens_radius * std::abs(1 / a.focus_distance - 1 / b.focus_distance);
+    return (turned + moved / b.subject_distance + lens + focus) * half_height / b.tan_half_height + zoomed;
+}
+
+kernels::CameraKey to_key(const CameraState& camera, const glm::dvec3& origin) {
+    const glm::vec3 p(camera.position - origin);
+    const glm::quat q(camera.rotation);
+    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<float>(camera.tan_half_width), static_cast<float>(camera.tan_half_height),
+            static_cast<float>(camera.lens_radius), static_cast<float>(camera.focus_distance)};
+}
+
+/// Applies `visit(track)` to every track of the camera that is in use.
+template <class Visit>
+void visit_tracks(const CameraSpec& spec, Visit visit) {
+    if (!spec.gltf) {
+        visit(spec.position);
+        visit(spec.up);
+        if (const auto* point = std::get_if<Track<glm::dvec3>>(&spec.look_at)) visit(*point);
+        if (spec.focal_length_mm) visit(*spec.focal_length_mm);
+        if (spec.vertical_fov_rad) visit(*spec.vertical_fov_rad);
+    }
+    if (spec.f_stop) visit(*spec.f_stop);
+    if (!spec.focus) return;
+    if (const auto* distance = std::get_if<Track<double>>(&*spec.focus)) visit(*distance);
+}
+
+std::vector<double> camera_key_times(const BoundShot& shot, double open_s, double close_s) {
+    std::vector<double> times;
+    const auto add = [&times](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
+    visit_tracks(shot.shot().camera, [&](const auto& track) { add(key_times(track, open_s, close_s)); });
+    const Bindings& bindings = shot.bindings();
+    if (bindings.camera_node >= 0) add(bindings.rig.key_times_of(bindings.camera_node, open_s, close_s));
+    if (const auto* node = std::get_if<NodeReference>(&shot.shot().camera.look_at); node && !shot.shot().camera.gltf)
+        if (const int at = shot.node_of(*node); at >= 0) add(bindings.rig.key_times_of(at, open_s, close_s));
+    for (double& time : times) time = (time - open_s) / (close_s - open_s);
+    return times;
+}
+
+}  // namespace
+
+CameraState camera_at(const BoundShot& shot, double time_s) {
+    CameraState camera = shot.bindings().camera_node >= 0 ? placed_by_node(shot, time_s) : placed_by_shot(shot, time_s);
+    set_focus(camera, shot, time_s);
+    set_lens(camera, shot, time_s);
+    return camera;
+}
+
+std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin) {
+    std::vector<CameraState> states{camera_at(shot, open_s)};
+    if (close_s > open_s) {
+        const std::vector<double> keys = camera_key_times(shot, open_s, close_s);
+        const double tolerance = kMargin * shot.shot().render.motion_tolerance_px;
+        const int height = shot.shot().image.height;
+        states = fit_keys(
+            even_segments_for(keys), static_cast<int>(std::min<std::size_t>(keys.size() + 1, kMostSegments)), kMostSegments,
+            [&](double u) { return camera_at(shot, open_s + u * (close_s - open_s)); }, std::equal_to<>(),
+            [&](const CameraState& a, const CameraState& b, double u, const CameraState& wanted) {
+                return angle_between(a.rotation, wanted.rotation) + angle_between(wanted.rotation, b.rotation) <= kWidestStep &&
+                       pixels_between(between(a, b, u), wanted, height) <= tolerance;
+            });
+    }
+    std::vector<kernels::CameraKey> result;
+    for (CameraState& state : states) {
+        if (&state != &states.front() && glm::dot((&state)[-1].rotation, state.rotation) < 0) state.rotation = -state.rotation;
+        result.push_back(to_key(state, origin));
+    }
+    return result;
+}
+
+kernels::Camera make_camera(const BoundShot& shot) {
+    kernels::Camera camera{};
+    camera.blades = shot.shot().camera.blades;
+    camera.far_clip = std::numeric_limits<float>::infinity();
+    const int node = shot.bindings().camera_node;
+    if (node < 0) return camera;
+    const SceneCamera& source = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].camera)];
+    camera.orthographic = source.orthographic;
+    camera.near_clip = static_cast<float>(source.znear);
+    if (source.zfar > 0) camera.far_clip = static_cast<float>(source.zfar);
+    return camera;
+}
+
+std::vector<double> camera_discontinuities(const BoundShot& shot, double begin_s, double end_s) {
+    std::vector<double> times;
+    visit_tracks(shot.shot().camera, [&](const auto& track) {
+        const std::vector<double> jumps = discontinuities(track, begin_s, end_s);
+        times.insert(times.end(), jumps.begin(), jumps.end());
+    });
+    return times;
+}
+
+PixelScale::PixelScale(const CameraState& camera, int image_height)
+    : position_(camera.position),
+      forward_(camera.rotation * glm::dvec3(0, 0, -1)),
+      scale_(0.5 * image_height / camera.tan_half_height),
+      corner_(camera.tan_half_width * camera.tan_half_width + camera.tan_half_height * camera.tan_half_height),
+      orthographic_(camera.orthographic) {}
+
+}  // namespace kadr

@@ -1,0 +1,179 @@
+#include "frame/frame_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "frame/bindings.h"
+#include "frame/problem.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr int kMostFrames = 1'000'000;
+
+/// Runs a step and keeps what it complains about, so that all problems of a shot come at once.
+template <class Step>
+void collect(std::vector<Diagnostic>& problems, Step step) {
+    try {
+        step();
+    } catch (const InputError& error) {
+        problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+}
+
+/// Every node reference of a shot but the authored camera's, which has rules of its own.
+std::vector<NodeReference> references_of(const Shot& shot) {
+    std::vector<NodeReference> all;
+    const auto add = [&all](const auto& value) {
+        if (const auto* reference = std::get_if<NodeReference>(&value)) all.push_back(*reference);
+    };
+    if (!shot.camera.gltf) add(shot.camera.look_at);
+    if (shot.camera.focus) add(*shot.camera.focus);
+    for (const LightSpec& light : shot.lights)
+        if (light.look_at) add(*light.look_at);
+    return all;
+}
+
+/// What a light asks for that the analytic integrator does not have; empty when there is nothing.
+std::string beyond_direct(const LightSpec& light) {
+    if (light.kind == LightKind::area) return fmt::format("lights.{}.type is area", light.id);
+    if (light.kind != LightKind::directional && varies(light.radius_m)) return fmt::format("lights.{}.radius is animated", light.id);
+    if (light.kind != LightKind::directional && evaluate(light.radius_m, 0) > 0) return fmt::format("lights.{}.radius is above 0", light.id);
+    if (light.kind == LightKind::directional && light.angular_diameter_rad > 0) return fmt::format("lights.{}.angular_diameter is above 0", light.id);
+    return {};
+}
+
+void check_integrator(const Shot& shot, std::vector<Diagnostic>& problems) {
+    if (shot.render.integrator != Integrator::direct) return;
+    for (const LightSpec& light : shot.lights)
+        if (const std::string found = beyond_direct(light); !found.empty())
+            problems.push_back(problem_at(light.where, found + ", which render.integrator direct does not have",
+                                          "expected a directional, point or spot light without a size; use integrator: path"));
+    if (shot.environment.image)
+        problems.push_back(problem_at(shot.environment.where, "environment.image is given, which render.integrator direct does not have",
+                                      "expected environment.color; use integrator: path"));
+}
+
+void check_lens(const Shot& shot, std::vector<Diagnostic>& problems) {
+    if (shot.camera.gltf && shot.camera.f_stop && !shot.camera.focus)
+        problems.push_back(problem_at(shot.camera.where, "camera.f_stop is given without camera.focus",
+                                      "expected a distance or a node in camera.focus: an authored camera has no look_at to focus on"));
+}
+
+/// Seconds of shot time at which the last clip has come to its end; 0 without clips.
+double longest_clip_s(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips) {
+    double longest = 0;
+    for (std::size_t f = 0; f < clips.size(); ++f)
+        for (const int clip : clips[f])
+            if (shot.scenes[f].clip_speed > 0)
+                longest = std::max(longest, (scene.clips[static_cast<std::size_t>(clip)].end_s - shot.scenes[f].clip_start_s) / shot.scenes[f].clip_speed);
+    return longest;
+}
+
+Timing with_frames(const Shot& shot, double longest_s) {
+    Timing timing = shot.timing;
+    if (shot.frames_given) return timing;
+    // Files hold times as floats: an end that is late by their rounding does not ask for one more frame.
+    const double last = std::ceil(longest_s * timing.fps.value() - 1e-4);
+    if (!(last < kMostFrames))
+        throw InputError(problem_at({shot.file.string(), 0, 0}, fmt::format("the longest clip runs for {:.0f} s", longest_s),
+                                    fmt::format("expected fewer than {} frames; give timing.frames", kMostFrames)));
+    timing.frames.resize(static_cast<std::size_t>(last) + 1);
+    std::iota(timing.frames.begin(), timing.frames.end(), timing.first);
+    return timing;
+}
+
+std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig) {
+    std::vector<InstanceSeed> seeds;
+    std::uint32_t id = 0;
+    for (std::size_t node = 0; node < scene.nodes.size(); ++node)
+        for (const MeshPrimitive& primitive : scene.nodes[node].primitives) {
+            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(primitive.material), id++};
+            if (rig.reachable(seed.node)) seeds.push_back(seed);
+        }
+    return seeds;
+}
+
+std::vector<int> light_nodes_of(const Scene& scene, const NodeRig& rig) {
+    std::vector<int> nodes;
+    for (std::size_t node = 0; node < scene.nodes.size(); ++node)
+        if (scene.nodes[node].light >= 0 && rig.reachable(static_cast<int>(node))) nodes.push_back(static_cast<int>(node));
+    return nodes;
+}
+
+bool any_emission(const Scene& scene, const std::vector<InstanceSeed>& seeds) {
+    return std::any_of(seeds.begin(), seeds.end(), [&](const InstanceSeed& seed) {
+        const kernels::Material& material = scene.materials[seed.material];
+        return material.unlit || material.emission.x > 0 || material.emission.y > 0 || material.emission.z > 0;
+    });
+}
+
+bool is_black(const EnvironmentSpec& environment) {
+    if (environment.image) return false;
+    const auto all_zero = [](const auto& track) {
+        return std::all_of(track.keys.begin(), track.keys.end(), [](const auto& key) { return key.value == decltype(key.value){}; });
+    };
+    return all_zero(environment.color) || all_zero(environment.strength);
+}
+
+std::vector<Diagnostic> warnings_of(const Shot& shot, const Scene& scene, const Bindings& bindings) {
+    std::vector<Diagnostic> warnings;
+    const SourceLocation file{shot.file.string(), 0, 0};
+    const bool lit = !shot.lights.empty() || !bindings.light_nodes.empty();
+    if (!lit && !shot.environment.given)
+        warnings.push_back(warning_at(file, "there are no lights and no environment",
+                                      shot.render.integrator == Integrator::direct
+                                          ? "the sky of the default environment is only a background under integrator direct; add `lights`"
+                                          : "lit by the default sky; add `lights` or `environment`"));
+    if (!lit && shot.environment.given && is_black(shot.environment) && !any_emission(scene, bindings.seeds))
+        warnings.push_back(warning_at(file, "nothing shines: no lights, a black environment and no emissive material", "every frame will be black"));
+    if (bindings.seeds.empty()) warnings.push_back(warning_at(file, "the scenes hold nothing to see", "no node of their default scenes has a mesh"));
+    return warnings;
+}
+
+}  // namespace
+
+glm::dvec3 Bindings::position_of(const NodeReference& reference, double time_s) const {
+    const ResolvedReference& at = references.at(reference.text);
+    return glm::dvec3((at.node < 0 ? rig.scene_transform(at.file, time_s) : rig.node_transform(at.node, time_s))[3]);
+}
+
+BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene_(&scene), sequence_({}, {}) {
+    std::vector<Diagnostic> problems;
+    std::vector<std::vector<int>> clips(scene.files.size());
+    std::map<std::string, ResolvedReference> references;
+    int camera_node = -1;
+    for (std::size_t f = 0; f < scene.files.size(); ++f)
+        collect(problems, [&] { clips[f] = playing_clips(scene, f, shot.scenes.at(f)); });
+    for (const NodeReference& reference : references_of(shot))
+        collect(problems, [&] { references[reference.text] = resolve(scene, reference); });
+    if (shot.camera.gltf) collect(problems, [&] { camera_node = resolve_camera(scene, *shot.camera.gltf); });
+    check_integrator(shot, problems);
+    check_lens(shot, problems);
+    collect(problems, [&] { timing_ = with_frames(shot, longest_clip_s(shot, scene, clips)); });
+    if (!problems.empty()) throw InputError(std::move(problems));
+
+    sequence_ = Sequence(timing_, shot.shutter);
+    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node});
+    bindings->seeds = seeds_of(scene, bindings->rig);
+    if (shot.use_scene_lights) bindings->light_nodes = light_nodes_of(scene, bindings->rig);
+    for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
+    warnings_ = warnings_of(shot, scene, *bindings);
+    bindings_ = std::move(bindings);
+}
+
+std::vector<glm::dmat4> BoundShot::node_transforms(double time_s) const { return bindings_->rig.all_transforms(time_s); }
+
+int BoundShot::node_of(const NodeReference& reference) const {
+    if (shot_->camera.gltf && reference == *shot_->camera.gltf) return bindings_->camera_node;
+    const auto known = bindings_->references.find(reference.text);
+    return (known != bindings_->references.end() ? known->second : resolve(*scene_, reference)).node;
+}
+
+int BoundShot::scene_of(const NodeReference& reference) const { return resolve(*scene_, reference).file; }
+
+}  // namespace kadr

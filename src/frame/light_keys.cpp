@@ -1,0 +1,179 @@
+#include "frame/light_keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "frame/bindings.h"
+#include "frame/camera_keys.h"
+#include "frame/decompose.h"
+#include "frame/key_grid.h"
+#include "frame/problem.h"
+#include "frame/view_axes.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr int kMostLightSegments = 32;
+constexpr double kRelativeTolerance = 1e-3;  // of a light's own values: a tenth of a step of 8-bit output
+
+kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+glm::dvec3 direction_of(const BoundShot& shot, const LightSpec& spec, const glm::dvec3& position, double time_s) {
+    glm::dvec3 direction = evaluate(spec.direction, time_s);
+    if (spec.look_at) {
+        const auto* point = std::get_if<Track<glm::dvec3>>(&*spec.look_at);
+        direction = (point ? evaluate(*point, time_s) : shot.bindings().position_of(std::get<NodeReference>(*spec.look_at), time_s)) - position;
+    }
+    const double length = glm::length(direction);
+    if (length > 0 && std::isfinite(length)) return direction / length;
+    if (spec.kind == LightKind::point) return {0, 0, -1};
+    throw InputError(problem_at(spec.where, fmt::format("light '{}' has no direction at {} s", spec.id, format_number(time_s)),
+                                spec.look_at ? "expected look_at to be another point than position" : "expected a direction other than [0, 0, 0]"));
+}
+
+void set_cone(kernels::Light& light, double inner_rad, double outer_rad) {
+    inner_rad = std::min(inner_rad, outer_rad);
+    light.inner_rad = static_cast<float>(inner_rad);
+    light.outer_rad = static_cast<float>(outer_rad);
+    light.cos_inner = static_cast<float>(std::cos(inner_rad));
+    light.cos_outer = static_cast<float>(std::cos(outer_rad));
+}
+
+void set_rectangle(kernels::Light& light, const glm::dvec3& direction, const glm::dvec2& size_m) {
+    const ViewAxes axes = view_axes(direction, {0, 1, 0});
+    light.axis_u = to_float(0.5 * size_m.x * axes.right);
+    light.axis_v = to_float(0.5 * size_m.y * axes.up);
+}
+
+kernels::Light light_at(const BoundShot& shot, const LightSpec& spec, double time_s, const glm::dvec3& origin) {
+    kernels::Light light{};
+    const glm::dvec3 position = evaluate(spec.position, time_s);
+    const glm::dvec3 direction = direction_of(shot, spec, position, time_s);
+    light.radiance = to_float(evaluate(spec.color, time_s) * evaluate(spec.strength, time_s));
+    light.kind = static_cast<kernels::LightKind>(spec.kind);
+    light.falloff = static_cast<kernels::SpotFalloff>(spec.falloff);
+    light.direction = to_float(direction);
+    if (spec.kind == LightKind::directional) {
+        light.cos_angular_radius = static_cast<float>(std::cos(0.5 * spec.angular_diameter_rad));
+        return light;
+    }
+    light.position = to_float(position - origin);
+    light.range = static_cast<float>(spec.range_m);
+    if (spec.kind == LightKind::area) {
+        set_rectangle(light, direction, evaluate(spec.size_m, time_s));
+    } else {
+        light.radius = static_cast<float>(evaluate(spec.radius_m, time_s));
+        set_cone(light, evaluate(spec.inner_rad, time_s), evaluate(spec.outer_rad, time_s));
+    }
+    return light;
+}
+
+/// KHR_lights_punctual: along the node's -z; scale has no meaning for a light.
+kernels::Light light_at(const BoundShot& shot, int node, double time_s, const glm::dvec3& origin) {
+    const SceneLight& source = shot.scene().lights[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].light)];
+    const glm::dmat4 world = shot.bindings().rig.node_transform(node, time_s);
+    const double length = glm::length(glm::dvec3(world[2]));
+    if (!is_finite(world))
+        throw InputError(fmt::format("the node of light '{}' has a transform that is not finite at {} s", source.name, format_number(time_s)),
+                         "expected finite translations and scales");
+    kernels::Light light{};
+    light.radiance = to_float(source.color * source.intensity);
+    light.kind = source.kind;
+    light.direction = to_float(length > 0 ? -glm::dvec3(world[2]) / length : glm::dvec3(0, 0, -1));
+    if (source.kind == kernels::LightKind::directional) return light;
+    light.position = to_float(glm::dvec3(world[3]) - origin);
+    light.range = static_cast<float>(source.range_m);
+    set_cone(light, source.inner_rad, source.outer_rad);
+    return light;
+}
+
+bool same(const kernels::Light& a, const kernels::Light& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+double length_of(const kernels::Vec3f& v) { return std::sqrt(static_cast<double>(dot(v, v))); }
+
+/// Whether half-way values lie near enough to the true ones. @param near_m  metres that may be called nothing
+bool fits(const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted, double near_m) {
+    const auto t = static_cast<float>(u);
+    const auto off = [t](const kernels::Vec3f& from, const kernels::Vec3f& to, const kernels::Vec3f& is) {
+        return length_of(from + (to - from) * t - is);
+    };
+    const auto close = [t](float from, float to, float is, double scale) {
+        return std::abs(std::lerp(static_cast<double>(from), static_cast<double>(to), static_cast<double>(t)) - is) <= kRelativeTolerance * scale;
+    };
+    const double brightness = std::max(length_of(a.radiance), length_of(b.radiance));
+    const double size = length_of(a.axis_u) + length_of(a.axis_v);
+    return off(a.radiance, b.radiance, wanted.radiance) <= kRelativeTolerance * brightness &&
+           off(a.position, b.position, wanted.position) <= near_m &&
+           off(a.direction, b.direction, wanted.direction) <= kRelativeTolerance &&
+           off(a.axis_u, b.axis_u, wanted.axis_u) <= kRelativeTolerance * size &&
+           off(a.axis_v, b.axis_v, wanted.axis_v) <= kRelativeTolerance * size &&
+           close(a.cos_inner, b.cos_inner, wanted.cos_inner, 1) && close(a.cos_outer, b.cos_outer, wanted.cos_outer, 1) &&
+           close(a.inner_rad, b.inner_rad, wanted.inner_rad, 1) && close(a.outer_rad, b.outer_rad, wanted.outer_rad, 1) &&
+           close(a.radius, b.radius, wanted.radius, std::max(a.radius, b.radius));
+}
+
+template <class Visit>
+void visit_tracks(const LightSpec& spec, Visit visit) {
+    visit(spec.strength);
+    visit(spec.color);
+    visit(spec.position);
+    visit(spec.direction);
+    if (spec.look_at)
+        if (const auto* point = std::get_if<Track<glm::dvec3>>(&*spec.look_at)) visit(*point);
+    visit(spec.inner_rad);
+    visit(spec.outer_rad);
+    visit(spec.radius_m);
+    visit(spec.size_m);
+}
+
+void append(std::vector<double>& all, const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); }
+
+std::vector<double> key_times_of(const BoundShot& shot, const LightSpec& spec, double open_s, double close_s) {
+    std::vector<double> times;
+    visit_tracks(spec, [&](const auto& track) { append(times, key_times(track, open_s, close_s)); });
+    if (!spec.look_at) return times;
+    if (const auto* target = std::get_if<NodeReference>(&*spec.look_at))
+        if (const int node = shot.node_of(*target); node >= 0) append(times, shot.bindings().rig.key_times_of(node, open_s, close_s));
+    return times;
+}
+
+template <class At>
+void add_keys(std::vector<double> key_times, double open_s, double close_s, double near_m, At at, SceneSnapshot& snapshot) {
+    std::vector<kernels::Light> keys{at(open_s)};
+    if (close_s > open_s) {
+        for (double& time : key_times) time = (time - open_s) / (close_s - open_s);
+        const int at_least = static_cast<int>(std::min<std::size_t>(key_times.size() + 1, kMostLightSegments));
+        keys = fit_keys(
+            even_segments_for(key_times), at_least, kMostLightSegments, [&](double u) { return at(open_s + u * (close_s - open_s)); }, same,
+            [near_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) { return fits(a, b, u, wanted, near_m); });
+    }
+    snapshot.lights.push_back({static_cast<std::uint32_t>(snapshot.light_keys.size()), static_cast<std::uint32_t>(keys.size())});
+    snapshot.light_keys.insert(snapshot.light_keys.end(), keys.begin(), keys.end());
+}
+
+}  // namespace
+
+void add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
+    const glm::dvec3 origin = snapshot.render_origin;
+    const double near_m = kRelativeTolerance * camera_at(shot, open_s).subject_distance;
+    for (const LightSpec& spec : shot.shot().lights)
+        add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, near_m,
+                 [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
+    for (const int node : shot.bindings().light_nodes)
+        add_keys(shot.bindings().rig.key_times_of(node, open_s, close_s), open_s, close_s, near_m,
+                 [&](double time) { return light_at(shot, node, time, origin); }, snapshot);
+}
+
+std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s) {
+    std::vector<double> times;
+    for (const LightSpec& spec : shot.shot().lights)
+        visit_tracks(spec, [&](const auto& track) { append(times, discontinuities(track, begin_s, end_s)); });
+    return times;
+}
+
+}  // namespace kadr

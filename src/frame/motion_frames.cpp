@@ -1,0 +1,439 @@
+#include "frame/motion_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "base/text.h"
+#include "frame/bindings.h"
+#include "frame/camera_keys.h"
+#include "frame/key_grid.h"
+#include "frame/problem.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees: what bounds of moving instances are good for
+constexpr double kMargin = 0.9;         // the error is looked at in three places of a segment, not everywhere
+constexpr double kBesideCamera = 0.05;  // of an instance's radius: nearer corners stand for faces that are farther away
+constexpr double kVanishing = 1e-5;     // of the scale near by: what stands for a scale of zero
+constexpr std::size_t kBatch = 2048;    // instances evaluated together; their samples stay in the cache
+
+/// What came out for one instance: its frames lie in the batch's list.
+struct Fitted {
+    std::uint32_t first = 0, count = 0;
+    bool linear = false, hidden = false;
+    float error_px = 0;
+};
+
+struct Batch {
+    std::vector<Fitted> fitted;           ///< parallel to the batch's instances
+    std::vector<Decomposition> frames;
+    std::vector<Diagnostic> problems;
+    bool too_fast = false;
+};
+
+/// The interval, and what the camera does in it.
+struct Interval {
+    const BoundShot& shot;
+    glm::dvec3 origin;
+    double open_s, close_s;
+    double tolerance_px;
+    int image_height;
+
+    double time(double u) const { return open_s + u * (close_s - open_s); }
+    /// The camera's view of points that are relative to the render origin.
+    PixelScale scale_at(double u) const {
+        CameraState camera = camera_at(shot, time(u));
+        camera.position -= origin;
+        return {camera, image_height};
+    }
+};
+
+glm::dmat4 node_from_geometry(const GeometryData& geometry) {
+    glm::dmat4 m(geometry.scale);
+    m[3] = glm::dvec4(geometry.centre, 1);
+    return m;
+}
+
+glm::dmat4 relative(glm::dmat4 world, const glm::dvec3& origin) {
+    for (int i = 0; i < 3; ++i) world[3][i] -= origin[i];
+    return world;
+}
+
+double radius_of(const glm::dmat4& m) {
+    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+/// Largest screen-space distance between two placements of [-1, 1]^3.
+double pixels_between(const glm::dmat4& is, const glm::dmat4& wanted, const PixelScale& scale) {
+    const double nearest = std::max(kBesideCamera * radius_of(wanted), 1e-30);
+    double worst = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 at(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1, 1);
+        const glm::dvec3 point(wanted * at);
+        worst = std::max(worst, scale.pixels(glm::distance(glm::dvec3(is * at), point), point, nearest));
+    }
+    return worst;
+}
+
+bool nearly_same(const glm::dmat4& a, const glm::dmat4& b) {
+    const double size = 1e-13 * (radius_of(a) + glm::length(glm::dvec3(a[3])));
+    for (int column = 0; column < 4; ++column)
+        if (!(glm::length(a[column] - b[column]) <= size)) return false;
+    return true;
+}
+
+glm::dmat4 mixed(const glm::dmat4& a, const glm::dmat4& b, double u) { return a * (1 - u) + b * u; }
+
+/// One moving instance and its true places at 4 * segments + 1 times.
+class Fit {
+public:
+    Fit(std::vector<glm::dmat4> places, const Interval& interval, const std::vector<PixelScale>& scales)
+        : places_(std::move(places)), interval_(interval), scales_(scales) {
+        for (const glm::dmat4& place : places_) parts_.push_back(decompose(place));
+    }
+
+    bool finite() const { return std::all_of(places_.begin(), places_.end(), is_finite); }
+    bool hidden() const { return std::all_of(parts_.begin(), parts_.end(), is_singular); }
+    bool still() const {
+        return std::all_of(places_.begin() + 1, places_.end(), [&](const glm::dmat4& m) { return nearly_same(m, places_[0]); });
+    }
+
+    /// Gives vanishing scales (an object that pops up from nothing) a tiny size, with the rotation of the nearest time
+    /// at which there is one. @return false where a scale changes its sign: no path leads through zero
+    bool open_up() {
+        const std::vector<Decomposition> found = parts_;
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            if (is_singular(found[i])) parts_[i] = opened(i, found), places_[i] = compose(parts_[i]);
+        return std::all_of(parts_.begin(), parts_.end(), [&](const Decomposition& p) { return (p.scale.z < 0) == (parts_[0].scale.z < 0); });
+    }
+
+    /// Radians that the rotation turns in the liveliest segment.
+    double widest_step() const {
+        double widest = 0;
+        for (std::size_t i = 0; i + 1 < parts_.size(); i += 4) {
+            double turn = 0;
+            for (std::size_t k = i; k < i + 4; ++k) turn += angle_between(parts_[k].rotation, parts_[k + 1].rotation);
+            widest = std::max(widest, turn);
+        }
+        return widest;
+    }
+
+    /// Screen-space error of every fourth place as a frame; stops early once beyond `enough`.
+    double error_px(double enough) const {
+        double worst = 0;
+        for (std::size_t i = 0; i < places_.size() && worst <= enough; ++i)
+            if (const std::size_t from = i / 4 * 4; i != from)
+                worst = std::max(worst, pixels_between(compose(interpolate(parts_[from], parts_[from + 4], 0.25 * static_cast<double>(i - from))), places_[i], scales_[i]));
+        return worst;
+    }
+
+    /// Whether two linearly interpolated matrices would do.
+    bool linear(double enough) const {
+        for (std::size_t i = 1; i < 4; ++i)
+            if (places_.size() != 5 || pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i]) > enough) return false;
+        return true;
+    }
+
+    void append_frames(std::vector<Decomposition>& frames, std::size_t step) const {
+        for (std::size_t i = 0; i < parts_.size(); i += step) frames.push_back(parts_[i]);
+    }
+
+private:
+    Decomposition opened(std::size_t at, const std::vector<Decomposition>& found) const {
+        std::size_t nearest = at, distance = found.size();
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (const std::size_t d = i < at ? at - i : i - at; !is_singular(found[i]) && d < distance) nearest = i, distance = d;
+        Decomposition parts = found[nearest];
+        const glm::dmat3 axes = glm::mat3_cast(parts.rotation);
+        parts.translation = glm::dvec3(places_[at][3]);
+        for (int i = 0; i < 3; ++i) {
+            const double own = glm::dot(axes[i], glm::dvec3(places_[at][i]));
+            const double least = kVanishing * parts.scale[i];
+            parts.scale[i] = std::abs(own) > std::abs(least) && (own < 0) == (least < 0) ? own : least;
+            parts.shear[i] *= kVanishing;
+        }
+        return parts;
+    }
+
+    std::vector<glm::dmat4> places_;
+    std::vector<Decomposition> parts_;
+    const Interval& interval_;
+    const std::vector<PixelScale>& scales_;
+};
+
+/// Fits the frames of some instances; those that need more go round again with twice as many.
+class BatchFit {
+public:
+    BatchFit(const Interval& interval, std::span<const InstanceSeed> seeds, Batch& batch)
+        : interval_(interval), seeds_(seeds), batch_(batch), rig_(interval.shot.bindings().rig), scene_(interval.shot.scene()) {
+        batch_.fitted.resize(seeds.size());
+    }
+
+    void run() {
+        fit_still();
+        for (std::map<int, std::vector<std::size_t>>::iterator next; (next = waiting_.begin()) != waiting_.end();) {
+            const auto [segments, members] = *next;
+            waiting_.erase(next);
+            if (members.empty()) continue;
+            fit_moving(segments, members);
+        }
+    }
+
+private:
+    const GeometryData& geometry_of(std::size_t i) const { return scene_.geometries[seeds_[i].geometry]; }
+
+    void refuse(std::size_t i, std::string_view what, std::string expected) {
+        const int file = rig_.file_of(seeds_[i].node);
+        const std::string name = node_path(scene_, file, seeds_[i].node);
+        batch_.problems.push_back(problem_at(interval_.shot.shot().scenes[static_cast<std::size_t>(file)].where,
+                                             fmt::format("node '{}' {} at {} s", name, what, format_number(interval_.open_s)), std::move(expected)));
+        batch_.fitted[i].hidden = true;
+    }
+
+    void refuse_infinite(std::size_t i) { refuse(i, "has a transform that is not finite", "expected finite translations, rotations and scales"); }
+
+    void accept(std::size_t i, std::size_t first, bool linear, double error_px) {
+        batch_.fitted[i] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(batch_.frames.size() - first), linear, false, static_cast<float>(error_px)};
+    }
+
+    /// Instances that do not move over the shot, or all of them when the shutter is closed in an instant.
+    void fit_still() {
+        const bool instant = !(interval_.close_s > interval_.open_s);
+        std::vector<int> nodes;
+        for (const InstanceSeed& seed : seeds_)
+            if (rig_.moves(seed.node)) nodes.push_back(seed.node);
+        const NodeRig::Selection selection = rig_.select(nodes);
+        std::vector<glm::dmat4> world;
+        if (instant) rig_.evaluate(selection, interval_.open_s, world);
+        const auto activity = instant ? std::vector<NodeRig::Activity>{} : rig_.activity(selection, interval_.open_s, interval_.close_s);
+        for (std::size_t i = 0; i < seeds_.size(); ++i) {
+            const int node = seeds_[i].node;
+            if (rig_.moves(node) && !instant) {
+                enqueue(i, activity[static_cast<std::size_t>(selection.slot_of(node))]);
+            } else {
+                place_still(i, rig_.moves(node) ? world[static_cast<std::size_t>(selection.slot_of(node))] : rig_.node_transform(node, interval_.open_s));
+            }
+        }
+    }
+
+    void place_still(std::size_t i, const glm::dmat4& world) {
+        const glm::dmat4 place = relative(world * node_from_geometry(geometry_of(i)), interval_.origin);
+        const Decomposition parts = decompose(place);
+        if (!is_finite(place)) return refuse_infinite(i);
+        batch_.fitted[i].hidden = is_singular(parts);
+        if (batch_.fitted[i].hidden) return;
+        batch_.frames.push_back(parts);
+        accept(i, batch_.frames.size() - 1, true, 0);
+    }
+
+    void enqueue(std::size_t i, const NodeRig::Activity& activity) {
+        const double steps = std::ceil(activity.turn_rad / kWidestStep - 1e-9);
+        if (!(steps <= kMostSegments)) batch_.too_fast = true;
+        // Keys that no even grid meets are smoothed: more segments than keys, so that none is passed over.
+        const int keys = std::min(activity.keys + 1, kMostSegments);
+        const int wanted = std::max(steps <= kMostSegments ? static_cast<int>(steps) : kMostSegments, keys);
+        waiting_[refined_segments(activity.grid, wanted)].push_back(i);
+    }
+
+    void fit_moving(int segments, const std::vector<std::size_t>& members) {
+        std::vector<int> nodes;
+        for (const std::size_t i : members) nodes.push_back(seeds_[i].node);
+        const NodeRig::Selection selection = rig_.select(nodes);
+        std::vector<std::vector<glm::dmat4>> worlds(static_cast<std::size_t>(4 * segments + 1));
+        std::vector<PixelScale> scales;
+        for (std::size_t k = 0; k < worlds.size(); ++k) {
+            const double u = static_cast<double>(k) / (4.0 * segments);
+            rig_.evaluate(selection, interval_.time(u), worlds[k]);
+            scales.push_back(interval_.scale_at(u));
+        }
+        for (const std::size_t i : members) {
+            const auto slot = static_cast<std::size_t>(selection.slot_of(seeds_[i].node));
+            const glm::dmat4 local = node_from_geometry(geometry_of(i));
+            std::vector<glm::dmat4> places;
+            places.reserve(worlds.size());
+            for (const auto& world : worlds) places.push_back(relative(world[slot] * local, interval_.origin));
+            fit_one(i, segments, Fit(std::move(places), interval_, scales));
+        }
+    }
+
+    void fit_one(std::size_t i, int segments, Fit fit) {
+        if (!fit.finite()) return refuse_infinite(i);
+        batch_.fitted[i].hidden = fit.hidden();
+        if (batch_.fitted[i].hidden) return;
+        const std::size_t first = batch_.frames.size();
+        if (fit.still()) {
+            fit.append_frames(batch_.frames, 4 * static_cast<std::size_t>(segments) + 1);
+            return accept(i, first, true, 0);
+        }
+        if (!fit.open_up())
+            return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
+                          "expected scales that keep their sign; use a step key to mirror an object");
+        const double enough = kMargin * interval_.tolerance_px;
+        const bool last = 2 * segments > kMostSegments;
+        const double step = fit.widest_step();
+        const double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
+        const double rounding = 1e-9;  // a turn of exactly 10 degrees a step, summed from four
+        if ((step > kWidestStep + rounding || error > enough) && !last) {
+            waiting_[2 * segments].push_back(i);
+            return;
+        }
+        if (step > kWidestStep + rounding) batch_.too_fast = true;
+        fit.append_frames(batch_.frames, 4);
+        accept(i, first, segments == 1 && fit.linear(enough), error);
+    }
+
+    const Interval& interval_;
+    std::span<const InstanceSeed> seeds_;
+    Batch& batch_;
+    const NodeRig& rig_;
+    const Scene& scene_;
+    std::map<int, std::vector<std::size_t>> waiting_;  ///< by segments
+};
+
+std::span<const InstanceSeed> batch_of(const std::vector<InstanceSeed>& seeds, std::size_t b) {
+    return std::span(seeds).subspan(b * kBatch, std::min(kBatch, seeds.size() - b * kBatch));
+}
+
+std::vector<Batch> fit_batches(const Interval& interval, const std::vector<InstanceSeed>& seeds) {
+    std::vector<Batch> batches((seeds.size() + kBatch - 1) / kBatch);
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) { BatchFit(interval, batch_of(seeds, b), batches[b]).run(); });
+    std::vector<Diagnostic> problems;
+    for (const Batch& batch : batches) problems.insert(problems.end(), batch.problems.begin(), batch.problems.end());
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return batches;
+}
+
+glm::dmat4 absolute(glm::dmat4 place, const glm::dvec3& origin) {
+    for (int i = 0; i < 3; ++i) place[3][i] += origin[i];
+    return place;
+}
+
+void add_instance(const BoundShot& shot, const InstanceSeed& seed, const Decomposition& first, SceneSnapshot& snapshot) {
+    SnapshotInstance instance;
+    instance.geometry = seed.geometry;
+    instance.material = seed.material;
+    instance.id = seed.id;
+    const NodeRig& rig = shot.bindings().rig;
+    instance.fixed = !rig.moves(seed.node);
+    // Not by way of the origin where there is a better way: subtracting and adding it again costs digits.
+    instance.world_from_geometry = instance.fixed ? rig.node_transform(seed.node, 0) * node_from_geometry(shot.scene().geometries[seed.geometry])
+                                                  : absolute(compose(first), snapshot.render_origin);
+    snapshot.instances.push_back(instance);
+}
+
+float frame_time(std::size_t frame, std::size_t count) {
+    return count > 1 ? static_cast<float>(static_cast<double>(frame) / static_cast<double>(count - 1)) : 0.0f;
+}
+
+void write_frames(MotionFrames& motion, const kernels::TransformHeader& header, const Decomposition* parts) {
+    for (std::size_t k = 0; k < header.frame_count; ++k) {
+        const float time = frame_time(k, header.frame_count);
+        const std::size_t at = header.first_frame + k;
+        if (motion.type == MotionFrames::Type::srt)
+            motion.srt[at] = to_srt(parts[k], time, k > 0 ? &motion.srt[at - 1] : nullptr);
+        else
+            motion.matrices[at] = to_matrix(parts[k], time);
+    }
+}
+
+bool any_sheared(const std::vector<Batch>& batches) {
+    return std::any_of(batches.begin(), batches.end(), [](const Batch& batch) { return std::any_of(batch.frames.begin(), batch.frames.end(), is_sheared); });
+}
+
+void pack(const BoundShot& shot, const std::vector<Batch>& batches, SceneSnapshot& snapshot) {
+    MotionFrames& motion = snapshot.motion;
+    motion.type = any_sheared(batches) ? MotionFrames::Type::matrix : MotionFrames::Type::srt;
+    std::vector<const Decomposition*> sources;
+    unsigned count = 0;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+        const auto seeds = batch_of(shot.bindings().seeds, b);
+        for (std::size_t i = 0; i < seeds.size(); ++i) {
+            const Fitted& fitted = batches[b].fitted[i];
+            if (fitted.hidden) continue;
+            sources.push_back(&batches[b].frames[fitted.first]);
+            add_instance(shot, seeds[i], *sources.back(), snapshot);
+            motion.headers.push_back({count, fitted.count});
+            motion.linear.push_back(fitted.linear ? 1 : 0);
+            motion.max_error_px = std::max(motion.max_error_px, static_cast<double>(fitted.error_px));
+            count += fitted.count;
+        }
+    }
+    if (motion.type == MotionFrames::Type::srt)
+        motion.srt.resize(count);
+    else
+        motion.matrices.resize(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sources.size(), 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) write_frames(motion, motion.headers[i], sources[i]);
+    });
+}
+
+}  // namespace
+
+kernels::FrameSrt to_srt(const Decomposition& parts, float time, const kernels::FrameSrt* previous) {
+    const glm::dquat q = parts.rotation.w < 0 ? -parts.rotation : parts.rotation;
+    const glm::dvec3 v(q.x, q.y, q.z);
+    const double sine = glm::length(v);
+    const glm::dvec3 before = previous ? glm::dvec3(previous->axis[0], previous->axis[1], previous->axis[2]) : glm::dvec3(0, 0, 1);
+    glm::dvec3 axis = sine > 1e-12 ? v / sine : before;
+    double angle = 2 * std::atan2(sine, q.w);
+    if (previous && glm::dot(axis, before) < 0) axis = -axis, angle = -angle;
+    kernels::FrameSrt frame{};
+    // The float nearest to pi lies above pi.
+    constexpr float kPi = 3.14159250f;
+    frame.angle = std::clamp(static_cast<float>(angle), -kPi, kPi);
+    for (int i = 0; i < 3; ++i) {
+        frame.axis[i] = static_cast<float>(axis[i]);
+        frame.scale[i] = static_cast<float>(parts.scale[i]);
+        frame.translation[i] = static_cast<float>(parts.translation[i]);
+    }
+    frame.time = time;
+    return frame;
+}
+
+kernels::FrameMatrix to_matrix(const Decomposition& parts, float time) {
+    const glm::dmat4 m = compose(parts);
+    kernels::FrameMatrix frame{};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) frame.matrix[row][column] = static_cast<float>(m[column][row]);
+    frame.time = time;
+    return frame;
+}
+
+Decomposition frame_parts(const MotionFrames& motion, std::size_t index) {
+    if (motion.type == MotionFrames::Type::matrix) {
+        glm::dmat4 m(1);
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column) m[column][row] = motion.matrices[index].matrix[row][column];
+        return decompose(m);
+    }
+    const kernels::FrameSrt& frame = motion.srt[index];
+    const glm::dvec3 axis(frame.axis[0], frame.axis[1], frame.axis[2]);
+    return {glm::angleAxis(static_cast<double>(frame.angle), glm::normalize(axis)), glm::dvec3(frame.scale[0], frame.scale[1], frame.scale[2]),
+            glm::dvec3(0), glm::dvec3(frame.translation[0], frame.translation[1], frame.translation[2])};
+}
+
+glm::dmat4 interpolate(const MotionFrames& motion, const kernels::TransformHeader& header, double time) {
+    if (header.frame_count == 1) return compose(frame_parts(motion, header.first_frame));
+    const double position = std::clamp(time, 0.0, 1.0) * (header.frame_count - 1);
+    const auto segment = std::min(static_cast<unsigned>(position), header.frame_count - 2);
+    const std::size_t first = header.first_frame + segment;
+    return compose(interpolate(frame_parts(motion, first), frame_parts(motion, first + 1), position - segment));
+}
+
+bool add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
+    const Interval interval{shot, snapshot.render_origin, open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
+    const std::vector<Batch> batches = fit_batches(interval, shot.bindings().seeds);
+    if (std::any_of(batches.begin(), batches.end(), [](const Batch& batch) { return batch.too_fast; })) return false;
+    pack(shot, batches, snapshot);
+    return true;
+}
+
+}  // namespace kadr

@@ -1,0 +1,171 @@
+#include "frame/references.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.h"
+#include "frame/problem.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr std::size_t kMostListed = 6;
+
+const Node& node_at(const Scene& scene, int node) { return scene.nodes[static_cast<std::size_t>(node)]; }
+
+std::string listed(const std::vector<std::string>& names) {
+    const std::vector<std::string> shown(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostListed)));
+    return fmt::format("{}{}", fmt::join(shown, ", "), names.size() > kMostListed ? fmt::format(" and {} more", names.size() - kMostListed) : "");
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& names, std::string_view what) {
+    if (const auto nearest = nearest_name(word, names)) return fmt::format("did you mean '{}'?", *nearest);
+    if (names.empty()) return fmt::format("there are no {}", what);
+    return fmt::format("expected one of the {}: {}", what, listed(names));
+}
+
+int file_named(const Scene& scene, const NodeReference& reference, std::string_view id) {
+    std::vector<std::string> ids;
+    for (std::size_t f = 0; f < scene.files.size(); ++f) {
+        if (scene.files[f].id == id) return static_cast<int>(f);
+        ids.push_back(scene.files[f].id);
+    }
+    throw InputError(problem_at(reference.where, fmt::format("'{}' names no scene", reference.text), suggestion(id, ids, "scenes")));
+}
+
+std::vector<std::string> split(std::string_view path) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('/', begin), path.size());
+        parts.emplace_back(path.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+/// Whether a node's name is the last part and the others are names above it, in this order.
+bool matches(const Scene& scene, int node, const std::vector<std::string>& parts) {
+    if (node_at(scene, node).name != parts.back()) return false;
+    std::size_t left = parts.size() - 1;
+    for (int above = node_at(scene, node).parent; left > 0 && above >= 0; above = node_at(scene, above).parent)
+        if (node_at(scene, above).name == parts[left - 1]) --left;
+    return left == 0;
+}
+
+std::vector<int> nodes_named(const Scene& scene, const SceneFile& file, const std::string& path) {
+    std::vector<int> found;
+    for (const std::vector<std::string>& parts : {std::vector<std::string>{path}, split(path)}) {  // a name may hold a '/'
+        for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
+            if (matches(scene, node, parts)) found.push_back(node);
+        if (!found.empty()) break;
+    }
+    return found;
+}
+
+std::vector<std::string> node_names(const Scene& scene, const SceneFile& file) {
+    std::set<std::string> names;
+    for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
+        if (!node_at(scene, node).name.empty()) names.insert(file.id + "/" + node_at(scene, node).name);
+    return {names.begin(), names.end()};
+}
+
+[[noreturn]] void refuse_ambiguous(const Scene& scene, const NodeReference& reference, int file, const std::vector<int>& nodes) {
+    std::vector<std::string> paths;
+    for (const int node : nodes) paths.push_back(node_path(scene, file, node));
+    throw InputError(problem_at(reference.where, fmt::format("'{}' names {} nodes", reference.text, nodes.size()),
+                                fmt::format("expected one; add a parent's name: {}", listed(paths))));
+}
+
+bool below(const Scene& scene, int node, int ancestor) {
+    while (node >= 0 && node != ancestor) node = node_at(scene, node).parent;
+    return node == ancestor;
+}
+
+/// Nodes with a camera at or below a node (-1: in the whole file).
+std::vector<int> cameras_below(const Scene& scene, const SceneFile& file, int ancestor) {
+    std::vector<int> found;
+    for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
+        if (node_at(scene, node).camera >= 0 && (ancestor < 0 || below(scene, node, ancestor))) found.push_back(node);
+    return found;
+}
+
+std::vector<int> cameras_named(const Scene& scene, const SceneFile& file, std::string_view name) {
+    std::vector<int> found = cameras_below(scene, file, -1);
+    std::erase_if(found, [&](int node) { return scene.cameras[static_cast<std::size_t>(node_at(scene, node).camera)].name != name; });
+    return found;
+}
+
+}  // namespace
+
+std::string node_path(const Scene& scene, int file, int node) {
+    std::string path;
+    for (; node >= 0; node = node_at(scene, node).parent) {
+        const std::string& name = node_at(scene, node).name;
+        path = "/" + (name.empty() ? fmt::format("#{}", node - scene.files[static_cast<std::size_t>(file)].first_node) : name) + path;
+    }
+    return scene.files[static_cast<std::size_t>(file)].id + path;
+}
+
+ResolvedReference resolve(const Scene& scene, const NodeReference& reference) {
+    const std::size_t slash = reference.text.find('/');
+    const int file = file_named(scene, reference, std::string_view(reference.text).substr(0, slash));
+    if (slash == std::string::npos) return {file, -1};
+    const SceneFile& source = scene.files[static_cast<std::size_t>(file)];
+    const std::vector<int> nodes = nodes_named(scene, source, reference.text.substr(slash + 1));
+    if (nodes.size() > 1) refuse_ambiguous(scene, reference, file, nodes);
+    if (nodes.empty())
+        throw InputError(problem_at(reference.where, fmt::format("'{}' names no node", reference.text),
+                                    suggestion(reference.text, node_names(scene, source), "nodes")));
+    return {file, nodes.front()};
+}
+
+int resolve_camera(const Scene& scene, const NodeReference& reference) {
+    const std::size_t slash = reference.text.find('/');
+    const int file = file_named(scene, reference, std::string_view(reference.text).substr(0, slash));
+    const SceneFile& source = scene.files[static_cast<std::size_t>(file)];
+    const std::string name = slash == std::string::npos ? "" : reference.text.substr(slash + 1);
+    const std::vector<int> named = name.empty() ? std::vector<int>{} : cameras_named(scene, source, name);
+    const std::vector<int> nodes = name.empty() ? std::vector<int>{-1} : nodes_named(scene, source, name);
+    std::vector<int> cameras;
+    if (nodes.size() == 1) cameras = cameras_below(scene, source, nodes.front());
+    if (nodes.size() == 1 && nodes.front() >= 0 && node_at(scene, nodes.front()).camera >= 0) cameras = nodes;
+    if (cameras.empty()) cameras = named;
+    if (cameras.size() > 1) refuse_ambiguous(scene, reference, file, cameras);
+    if (!cameras.empty()) return cameras.front();
+    std::vector<std::string> paths;
+    for (const int node : cameras_below(scene, source, -1)) paths.push_back(node_path(scene, file, node));
+    throw InputError(problem_at(reference.where, fmt::format("camera.gltf is '{}', which is no camera", reference.text),
+                                suggestion(reference.text, paths, fmt::format("cameras of '{}'", source.id))));
+}
+
+std::vector<int> playing_clips(const Scene& scene, std::size_t file, const SceneSpec& spec) {
+    const SceneFile& source = scene.files[file];
+    std::vector<int> all;
+    std::vector<std::string> names;
+    for (int clip = source.first_clip; clip < source.first_clip + source.clip_count; ++clip) {
+        all.push_back(clip);
+        names.push_back(scene.clips[static_cast<std::size_t>(clip)].name);
+    }
+    if (spec.clips == SceneSpec::Clips::none) return {};
+    if (spec.clips == SceneSpec::Clips::all) return all;
+    if (spec.clip_index >= 0) {
+        if (spec.clip_index < source.clip_count) return {source.first_clip + spec.clip_index};
+        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has no clip {}", spec.id, spec.clip_index),
+                                    source.clip_count == 0 ? "the file has no clips; leave `clip` out"
+                                                           : fmt::format("expected 0 to {}", source.clip_count - 1)));
+    }
+    std::erase_if(all, [&](int clip) { return scene.clips[static_cast<std::size_t>(clip)].name != spec.clip_name; });
+    if (all.empty())
+        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has no clip '{}'", spec.id, spec.clip_name),
+                                    suggestion(spec.clip_name, names, "clips of the file")));
+    if (all.size() > 1)
+        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has {} clips '{}'", spec.id, all.size(), spec.clip_name),
+                                    "expected one; give its index"));
+    return all;
+}
+
+}  // namespace kadr

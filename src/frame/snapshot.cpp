@@ -1,0 +1,209 @@
+#include "frame/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "frame/bindings.h"
+#include "frame/camera_keys.h"
+#include "frame/light_keys.h"
+#include "frame/motion_frames.h"
+#include "frame/problem.h"
+#include "frame/render_origin.h"
+
+namespace kadr {
+
+namespace {
+
+constexpr std::size_t kMostParts = 64;
+constexpr int kDeepestSplit = 6;  // 2^6 parts of 128 steps of 10 degrees: more than 200 turns in one shutter
+constexpr glm::dvec3 kSky{0.53, 0.81, 0.92};
+
+/// A part of the shutter within which everything is continuous.
+struct Part {
+    double open_s, close_s;
+    bool jump_at_open, jump_at_close;
+};
+
+/// The times that a part is evaluated at: just inside of jumps, where step keys still have the part's own value.
+Part inside_of(const Part& part) {
+    const double length = part.close_s - part.open_s;
+    const double ulps = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(part.open_s), std::abs(part.close_s));
+    const double inset = std::min(std::max(1e-7 * length, ulps), 0.25 * length);
+    return {part.open_s + (part.jump_at_open ? inset : 0), part.close_s - (part.jump_at_close ? inset : 0), false, false};
+}
+
+std::vector<double> environment_discontinuities(const EnvironmentSpec& environment, double begin_s, double end_s) {
+    std::vector<double> times = discontinuities(environment.color, begin_s, end_s);
+    for (const Track<double>* track : {&environment.strength, &environment.rotate_rad}) {
+        const std::vector<double> more = discontinuities(*track, begin_s, end_s);
+        times.insert(times.end(), more.begin(), more.end());
+    }
+    return times;
+}
+
+std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
+    std::vector<double> all;
+    for (const std::vector<double>& times : {shot.bindings().rig.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
+                                             light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s)})
+        all.insert(all.end(), times.begin(), times.end());
+    std::sort(all.begin(), all.end());
+    // Jumps of different tracks that fall together differ by the rounding of their clips' times.
+    const double together = 1e-9 * (end_s - begin_s);
+    all.erase(std::unique(all.begin(), all.end(), [together](double a, double b) { return b - a <= together; }), all.end());
+    std::erase_if(all, [&](double time) { return time - begin_s <= together || end_s - time <= together; });
+    return all;
+}
+
+std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
+    std::vector<double> jumps;
+    if (frame.close_s > frame.open_s) jumps = jumps_inside(shot, frame.open_s, frame.close_s);
+    if (jumps.size() >= kMostParts)
+        throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("the shutter of frame {} holds {} step keys", frame.number, jumps.size()),
+                                    fmt::format("expected fewer than {}; close the shutter earlier", kMostParts)));
+    std::vector<Part> parts;
+    double open = frame.open_s;
+    for (const double jump : jumps) {
+        parts.push_back({open, jump, !parts.empty(), true});
+        open = jump;
+    }
+    parts.push_back({open, frame.close_s, !parts.empty(), false});
+    return parts;
+}
+
+bool has_lights(const BoundShot& shot) { return !shot.shot().lights.empty() || !shot.bindings().light_nodes.empty(); }
+
+kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+/// The environment does not move within a part; its middle stands for it.
+EnvironmentSnapshot environment_at(const BoundShot& shot, double time_s) {
+    const EnvironmentSpec& spec = shot.shot().environment;
+    EnvironmentSnapshot environment;
+    environment.visible = spec.visible;
+    if (!spec.given) {
+        environment.radiance = to_float(has_lights(shot) ? glm::dvec3(0) : kSky);
+        return environment;
+    }
+    const double strength = evaluate(spec.strength, time_s);
+    environment.image = spec.image;
+    environment.radiance = to_float(spec.image ? glm::dvec3(strength) : evaluate(spec.color, time_s) * strength);
+    environment.rotate_rad = static_cast<float>(evaluate(spec.rotate_rad, time_s));
+    return environment;
+}
+
+unsigned mixed_seed(std::uint32_t seed, int frame) {
+    Hasher hasher;
+    hasher.add(static_cast<std::int64_t>(seed));
+    hasher.add(static_cast<std::int64_t>(frame));
+    return static_cast<unsigned>(hasher.finish().low);
+}
+
+kernels::Settings settings_of(const Shot& shot, int frame) {
+    const RenderSpec& render = shot.render;
+    kernels::Settings settings;
+    settings.integrator = static_cast<kernels::IntegratorKind>(render.integrator);
+    settings.filter = static_cast<kernels::FilterKind>(render.filter);
+    settings.filter_radius = static_cast<float>(0.5 * render.filter_width_px);
+    settings.width = shot.image.width;
+    settings.height = shot.image.height;
+    settings.max_bounces = render.bounces.total;
+    settings.max_diffuse = render.bounces.diffuse;
+    settings.max_glossy = render.bounces.glossy;
+    settings.seed = render.seed_animated ? mixed_seed(render.seed, frame) : render.seed;
+    settings.clamp_direct = static_cast<float>(render.clamp_direct.value_or(0));
+    settings.clamp_indirect = static_cast<float>(render.clamp_indirect.value_or(0));
+    settings.cull_backfaces = render.cull_backfaces;
+    settings.transparent_background = !shot.environment.visible;
+    return settings;
+}
+
+static_assert(static_cast<int>(Integrator::path) == static_cast<int>(kernels::IntegratorKind::path));
+static_assert(static_cast<int>(FilterKind::blackman_harris) == static_cast<int>(kernels::FilterKind::blackman_harris));
+static_assert(static_cast<int>(LightKind::area) == static_cast<int>(kernels::LightKind::area));
+static_assert(static_cast<int>(SpotFalloff::blender) == static_cast<int>(kernels::SpotFalloff::blender));
+
+template <class T>
+void add_bytes(Hasher& hasher, const std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    hasher.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+}
+
+std::uint64_t key_of(const SceneSnapshot& snapshot) {
+    Hasher hasher;
+    std::vector<std::uint32_t> integers;
+    std::vector<double> places;
+    for (const SnapshotInstance& instance : snapshot.instances) {
+        integers.insert(integers.end(), {instance.geometry, instance.material, instance.id, instance.mask, instance.fixed ? 1u : 0u});
+        const double* first = &instance.world_from_geometry[0][0];
+        if (instance.fixed) places.insert(places.end(), first, first + 16);
+    }
+    add_bytes(hasher, integers);
+    add_bytes(hasher, places);
+    add_bytes(hasher, snapshot.motion.headers);
+    add_bytes(hasher, snapshot.motion.srt);
+    add_bytes(hasher, snapshot.motion.matrices);
+    add_bytes(hasher, snapshot.motion.linear);
+    for (int i = 0; i < 3; ++i) hasher.add(snapshot.render_origin[i]);
+    return hasher.finish().low;
+}
+
+[[noreturn]] void refuse_spin(const BoundShot& shot, const FrameTime& frame) {
+    throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("something turns more than 200 times within the shutter of frame {}", frame.number),
+                                "expected a slower rotation or a shorter shutter"));
+}
+
+class FrameSnapshots {
+public:
+    FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
+        const CameraState camera = camera_at(shot, frame.open_s);
+        origin_ = render_origin(camera.position, camera.subject_distance);
+    }
+
+    std::vector<SceneSnapshot> make() {
+        for (const Part& part : split(shot_, frame_)) add(part, 0);
+        return std::move(snapshots_);
+    }
+
+private:
+    void add(const Part& part, int depth) {
+        const Part inside = inside_of(part);
+        SceneSnapshot snapshot;
+        snapshot.render_origin = origin_;
+        if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
+        const double whole = frame_.close_s - frame_.open_s;
+        snapshot.frame_number = frame_.number;
+        snapshot.open_s = part.open_s;
+        snapshot.close_s = part.close_s;
+        snapshot.weight = whole > 0 ? (part.close_s - part.open_s) / whole : 1;
+        snapshot.camera_keys = make_camera_keys(shot_, inside.open_s, inside.close_s, origin_);
+        snapshot.camera = make_camera(shot_);
+        snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
+        add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
+        snapshot.environment = environment_at(shot_, 0.5 * (inside.open_s + inside.close_s));
+        snapshot.settings = settings_of(shot_.shot(), frame_.number);
+        snapshot.geometry_key = key_of(snapshot);
+        snapshots_.push_back(std::move(snapshot));
+    }
+
+    void add_halves(const Part& part, int depth) {
+        if (depth >= kDeepestSplit) refuse_spin(shot_, frame_);
+        const double middle = 0.5 * (part.open_s + part.close_s);
+        add({part.open_s, middle, part.jump_at_open, false}, depth + 1);
+        add({middle, part.close_s, false, part.jump_at_close}, depth + 1);
+    }
+
+    const BoundShot& shot_;
+    const FrameTime& frame_;
+    glm::dvec3 origin_;
+    std::vector<SceneSnapshot> snapshots_;
+};
+
+}  // namespace
+
+std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame) { return FrameSnapshots(shot, frame).make(); }
+
+}  // namespace kadr
