@@ -29,13 +29,10 @@ SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, Vec
     const F k = alpha * F(0.5f);
     const F lobe = F(0.25f) * d / ((n_o * (one - k) + k) * (max(n_i, zero) * (one - k) + k));
     const F fresnel = schlick_weight(h_o);
-    const F dielectric_share = (one - metallic) * F(kInvPi);
-    const auto channel = [&](F c) {
-        const F f0 = F(0.04f) + (c - F(0.04f)) * metallic;
-        const F f = f0 + (one - f0) * fresnel;
-        return (one - f) * dielectric_share * c + f * lobe;
-    };
-    const Vec3<F> value{channel(base_color.x), channel(base_color.y), channel(base_color.z)};
+    const F f0(0.04f);
+    const Vec3<F> white{one, one, one};
+    const Vec3<F> reflectance = lerp(lerp(Vec3<F>{f0, f0, f0}, base_color, metallic), white, fresnel);
+    const Vec3<F> value = (white - reflectance) * base_color * ((one - metallic) * F(kInvPi)) + reflectance * lobe;
     return select(Mask<F>(n_i > zero), value, Vec3<F>{zero, zero, zero});
 }
 

@@ -39,63 +39,65 @@ struct BsdfSample {
     Mask<F> glossy;  ///< drawn from the lobe
 };
 
+/// Bilinear look-up in an albedo table: `at` is the lower left entry, fx and fy the place between entries.
+template <class F>
+SHARED_FN F table_bilinear(const float* t, Int<F> at, F fx, F fy) {
+    constexpr int n = kAlbedoTableSize;
+    const F low = lerp(gather(t, at), gather(t + 1, at), fx);
+    const F high = lerp(gather(t + n, at), gather(t + n + 1, at), fx);
+    return lerp(low, high, fy);
+}
+
 /// Albedos of the lobe: `white` with a Fresnel term of 1, `schlick` with (1 - h.o)^5.
 template <class F>
 SHARED_FN void lobe_albedo(F cos_o, F roughness, F& white, F& schlick) {
     constexpr int n = kAlbedoTableSize;
     const F x = sqrt(sqrt(saturate(cos_o))) * F(static_cast<float>(n - 1));
-    const F row = (sqrt(saturate(roughness)) - F(kAlbedoTableStart)) * F((n - 1) / (1.0f - kAlbedoTableStart));
-    const F y = max(row, F(0.0f));
+    const F y =
+        max((sqrt(saturate(roughness)) - F(kAlbedoTableStart)) * F((n - 1) / (1.0f - kAlbedoTableStart)), F(0.0f));
     const Int<F> i = clamp_index<F>(truncate(x), 0, n - 2);
     const Int<F> j = clamp_index<F>(truncate(y), 0, n - 2);
-    const F fx = x - F(i);
-    const F fy = y - F(j);
     const Int<F> at = j * Int<F>(n) + i;
-    const auto bilinear = [&](const float* t) {
-        const F low = lerp(gather(t, at), gather(t + 1, at), fx);
-        const F high = lerp(gather(t + n, at), gather(t + n + 1, at), fx);
-        return lerp(low, high, fy);
-    };
-    white = bilinear(kAlbedoWhite);
-    schlick = bilinear(kAlbedoSchlick);
+    white = table_bilinear(kAlbedoWhite, at, x - F(i), y - F(j));
+    schlick = table_bilinear(kAlbedoSchlick, at, x - F(i), y - F(j));
 }
 
-/// Albedo of the lobe with all scattering orders, for a Fresnel reflectance f0 = f90 = 1 at most.
+/// Albedos of the lobe for Fresnel reflectances f0 (and f90 = 1), of one scattering order and of all.
+template <class F>
+SHARED_FN F single_albedo(F f0, F white, F schlick) {
+    return f0 * (white - schlick) + schlick;
+}
 template <class F>
 SHARED_FN F compensated_albedo(F f0, F white, F schlick, F missing) {
-    return (f0 * (white - schlick) + schlick) * (F(1.0f) + f0 * missing);
+    return single_albedo(f0, white, schlick) * (F(1.0f) + f0 * missing);
 }
 
 /// @param base_color, metallic, roughness  in [0, 1]
 /// @param cos_o  cosine between the shading normal and the viewer, > 0
 template <class F>
 SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o) {
-    const F one(1.0f);
+    const F one(1.0f), tiny(1e-20f), f0(kDielectricF0);
     F white, schlick;
     lobe_albedo(cos_o, roughness, white, schlick);
     const F missing = (one - white) / white;
-    const F dielectric = compensated_albedo(F(kDielectricF0), white, schlick, missing);
-    // glTF mixes a dielectric and a metal; Schlick's term is linear in f0, so one lobe serves both, scaled to the
-    // mixture of their albedos.
+    const F dielectric = compensated_albedo(f0, white, schlick, missing);
     Bsdf<F> b;
     b.alpha = ggx_alpha(roughness);
-    const F base_share = (one - metallic) * (one - dielectric);
-    b.diffuse = base_color * base_share;
-    const auto channel = [&](F color, F& f0, F& scale) {
-        f0 = F(kDielectricF0) + (color - F(kDielectricF0)) * metallic;
-        const F metal = compensated_albedo(color, white, schlick, missing);
-        const F albedo = dielectric + (metal - dielectric) * metallic;
-        scale = albedo / max(f0 * (white - schlick) + schlick, F(1e-20f));
-        return albedo;
-    };
-    Vec3<F> specular;
-    specular.x = channel(base_color.x, b.f0.x, b.specular_scale.x);
-    specular.y = channel(base_color.y, b.f0.y, b.specular_scale.y);
-    specular.z = channel(base_color.z, b.f0.z, b.specular_scale.z);
+    b.diffuse = base_color * ((one - metallic) * (one - dielectric));
+    // glTF mixes a dielectric and a metal; Schlick's term is linear in f0, so one lobe serves both, scaled to the
+    // mixture of their albedos.
+    b.f0 = lerp(Vec3<F>{f0, f0, f0}, base_color, metallic);
+    const Vec3<F> metal{compensated_albedo(base_color.x, white, schlick, missing),
+                        compensated_albedo(base_color.y, white, schlick, missing),
+                        compensated_albedo(base_color.z, white, schlick, missing)};
+    const Vec3<F> specular = lerp(Vec3<F>{dielectric, dielectric, dielectric}, metal, metallic);
+    b.specular_scale = {specular.x / max(single_albedo(b.f0.x, white, schlick), tiny),
+                        specular.y / max(single_albedo(b.f0.y, white, schlick), tiny),
+                        specular.z / max(single_albedo(b.f0.z, white, schlick), tiny)};
     const F s = luminance(specular);
     const F d = luminance(b.diffuse);
     // Neither lobe below 5 %: a lobe that lights shine into must not be met once in a thousand samples.
-    const F share = clamp(s / max(s + d, F(1e-20f)), F(0.05f), F(0.95f));
+    const F share = clamp(s / max(s + d, tiny), F(0.05f), F(0.95f));
     b.specular_probability = select(Mask<F>(d > F(0.0f)), share, one);
     return b;
 }
@@ -103,30 +105,27 @@ SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o
 /// Value and density of a direction of light. Local frame, wo.z > 0; zero for light from below the horizon.
 template <class F>
 SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
+    const F zero(0.0f), one(1.0f);
     const Vec3<F> sum = wo + wi;
     const F sum2 = max(dot(sum, sum), F(1e-20f));
-    const F inverse = F(1.0f) / sum2;
-    const F cos2_h = sum.z * sum.z * inverse;
-    const F sin2_h = (sum.x * sum.x + sum.y * sum.y) * inverse;
-    const F h_o = F(0.5f) * sqrt(sum2);  // |wo + wi| = 2 cos of the half angle
     const F alpha2 = b.alpha * b.alpha;
-    const F d = ggx_d(sin2_h, cos2_h, alpha2);
+    // D = alpha^2 / (pi t^2); from the sines of h, because 1 - cos^2 would lose every digit of a narrow lobe.
+    const F t = (sum.x * sum.x + sum.y * sum.y + alpha2 * sum.z * sum.z) / sum2;
     const F root_o = smith_root(wo.z, alpha2);
     const F root_i = smith_root(wi.z, alpha2);
-    // D G2 / (4 cos_o) with G2 = 2 cos_o cos_i / (cos_i root_o + cos_o root_i); pdf = G1 D / (4 cos_o).
-    const F lobe = F(0.5f) * d * wi.z / max(wi.z * root_o + wo.z * root_i, F(1e-20f));
-    const F lobe_pdf = F(0.5f) * d / (wo.z + root_o);
-    const F fresnel = schlick_weight(h_o);
+    // Lobe: D G2 / (4 cos_o) with G2 = 2 cos_o cos_i / (cos_i root_o + cos_o root_i); density: G1 D / (4 cos_o) with
+    // G1 = 2 cos_o / (cos_o + root_o). Both over one common denominator.
+    const F masking = wi.z * root_o + wo.z * root_i;
+    const F visible = wo.z + root_o;
+    const F common = F(0.5f * kInvPi) * alpha2 / max(t * t * masking * visible, F(1e-34f));
+    const F lobe = common * wi.z * visible;
+    const F lobe_pdf = common * masking;
+    const F fresnel = schlick_weight(F(0.5f) * sqrt(sum2));  // |wo + wi| = 2 cos of the half angle
     const F base = F(kInvPi) * wi.z;
-    const auto channel = [&](F f0, F scale, F diffuse) {
-        return (f0 + (F(1.0f) - f0) * fresnel) * scale * lobe + diffuse * base;
-    };
-    const Mask<F> above = wi.z > F(0.0f);
-    const F zero(0.0f);
-    const Vec3<F> f_cos{channel(b.f0.x, b.specular_scale.x, b.diffuse.x),
-                        channel(b.f0.y, b.specular_scale.y, b.diffuse.y),
-                        channel(b.f0.z, b.specular_scale.z, b.diffuse.z)};
-    const F pdf = base + (lobe_pdf - base) * b.specular_probability;
+    const Vec3<F> reflectance = lerp(b.f0, Vec3<F>{one, one, one}, fresnel);
+    const Vec3<F> f_cos = reflectance * b.specular_scale * lobe + b.diffuse * base;
+    const F pdf = base * (one - b.specular_probability) + lobe_pdf * b.specular_probability;
+    const Mask<F> above = wi.z > zero;
     return {select(above, f_cos, Vec3<F>{zero, zero, zero}), select(above, pdf, zero)};
 }
 
@@ -143,11 +142,10 @@ SHARED_FN BsdfSample<F> sample_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec2<F> u, F u
     const Vec3<F> diffuse{radius * c, radius * s, safe_sqrt(F(1.0f) - radius * radius)};
     const Vec3<F> h = sample_visible_normal(wo, b.alpha, s, c, u.y);
     const Vec3<F> reflected = h * (F(2.0f) * dot(h, wo)) - wo;
-    result.wi = normalize(select(result.glossy, reflected, diffuse));
+    result.wi = select(result.glossy, reflected, diffuse);
     const BsdfValue<F> value = evaluate_bsdf(b, wo, result.wi);
     const Mask<F> valid = value.pdf > F(0.0f);
-    const F inverse = select(valid, F(1.0f) / select(valid, value.pdf, F(1.0f)), F(0.0f));
-    result.weight = value.f_cos * inverse;
+    result.weight = value.f_cos * (F(1.0f) / select(valid, value.pdf, F(1.0f)));  // f_cos is 0 where the density is
     result.pdf = value.pdf;
     return result;
 }

@@ -51,6 +51,11 @@ SHARED_FN Vec2<F> environment_uv(const EnvironmentMap& map, Vec3<F> direction) {
     return {min(azimuth - floor(azimuth), F(kOneMinusEpsilon)), atan2_turns(sine, direction.y) * F(2.0f)};
 }
 
+template <class F>
+SHARED_FN Vec3<F> texel_at(const EnvironmentMap& map, Int<F> texel) {
+    return gather_vec3<F>(&map.texels->x, texel * Int<F>(3));
+}
+
 /// Bilinear between the texels' centres; the row wraps around, the columns end at the poles.
 template <class F>
 SHARED_FN Vec3<F> environment_texel(const EnvironmentMap& map, Vec2<F> uv) {
@@ -63,9 +68,9 @@ SHARED_FN Vec3<F> environment_texel(const EnvironmentMap& map, Vec2<F> uv) {
     const Int<F> x1 = select(Mask<F>(x0 < last), x0 + one, Int<F>(0));
     const Int<F> y0 = clamp_index<F>(row, 0, map.height - 1);
     const Int<F> y1 = clamp_index<F>(row + one, 0, map.height - 1);
-    const float* texels = &map.texels->x;
-    const auto at = [&](Int<F> r, Int<F> c) { return gather_vec3<F>(texels, (r * Int<F>(map.width) + c) * Int<F>(3)); };
-    return lerp(lerp(at(y0, x0), at(y0, x1), fx), lerp(at(y1, x0), at(y1, x1), fx), fy);
+    const Int<F> upper = y0 * Int<F>(map.width), lower = y1 * Int<F>(map.width);
+    return lerp(lerp(texel_at<F>(map, upper + x0), texel_at<F>(map, upper + x1), fx),
+                lerp(texel_at<F>(map, lower + x0), texel_at<F>(map, lower + x1), fx), fy);
 }
 
 /// Radiance from a unit direction.
@@ -94,23 +99,26 @@ SHARED_FN F environment_pdf(const EnvironmentMap& map, Vec3<F> direction) {
     return texel_pdf<F>(map, row, column, sqrt(direction.x * direction.x + direction.z * direction.z));
 }
 
+/// Where x lies between cdf[i] and cdf[i + 1], in [0, 1].
+template <class F>
+SHARED_FN F fraction_within(const float* cdf, Int<F> i, F x) {
+    const F low = gather(cdf, i);
+    const F width = gather(cdf + 1, i) - low;
+    return saturate((x - low) / select(Mask<F>(width > F(0.0f)), width, F(1.0f)));
+}
+
 /// A direction drawn by brightness.
 ///
 /// @param direction  unit length
 /// @param pdf        per steradian; 0: no sample
 template <class F>
 SHARED_FN void sample_environment(const EnvironmentMap& map, Vec2<F> u, Vec3<F>& direction, Vec3<F>& radiance, F& pdf) {
-    const auto within = [](const float* table, Int<F> i, F x) {
-        const F low = gather(table, i);
-        const F width = gather(table + 1, i) - low;
-        return saturate((x - low) / select(Mask<F>(width > F(0.0f)), width, F(1.0f)));
-    };
     const Int<F> row = find_interval<F>(map.marginal, Int<F>(0), map.height, u.y);
     const Int<F> first = row * Int<F>(map.width + 1);
     const Int<F> at = find_interval<F>(map.conditional, first, map.width, u.x);
     const Int<F> column = at - first;
-    const F x = (F(column) + within(map.conditional, at, u.x)) * F(1.0f / static_cast<float>(map.width));
-    const F y = (F(row) + within(map.marginal, row, u.y)) * F(1.0f / static_cast<float>(map.height));
+    const F x = (F(column) + fraction_within<F>(map.conditional, at, u.x)) * F(1.0f / static_cast<float>(map.width));
+    const F y = (F(row) + fraction_within<F>(map.marginal, row, u.y)) * F(1.0f / static_cast<float>(map.height));
     F sine, cosine, s, c;
     sincos_2pi(y * F(0.5f), sine, cosine);
     sine = abs(sine);

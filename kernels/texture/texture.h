@@ -65,6 +65,10 @@ SHARED_FN int wrap_index(Wrap wrap, int i, int size) {
     return i;
 }
 
+SHARED_FN float bilinear(float a, float b, float c, float d, float fx, float fy) {
+    return lerp(lerp(a, b, fx), lerp(c, d, fx), fy);
+}
+
 /// Interpolated in linear light: texels are decoded first.
 SHARED_FN Vec4f sample_bilinear(const Texture& t, float u, float v) {
     const float x = u * static_cast<float>(t.width) - 0.5f;
@@ -77,8 +81,8 @@ SHARED_FN Vec4f sample_bilinear(const Texture& t, float u, float v) {
     const int y1 = wrap_index(t.wrap_t, static_cast<int>(top) + 1, t.height);
     const Vec4f a = fetch_texel(t, x0, y0), b = fetch_texel(t, x1, y0);
     const Vec4f c = fetch_texel(t, x0, y1), d = fetch_texel(t, x1, y1);
-    const auto blend = [&](float p, float q, float r, float s) { return lerp(lerp(p, q, fx), lerp(r, s, fx), fy); };
-    return {blend(a.x, b.x, c.x, d.x), blend(a.y, b.y, c.y, d.y), blend(a.z, b.z, c.z, d.z), blend(a.w, b.w, c.w, d.w)};
+    return {bilinear(a.x, b.x, c.x, d.x, fx, fy), bilinear(a.y, b.y, c.y, d.y, fx, fy),
+            bilinear(a.z, b.z, c.z, d.z, fx, fy), bilinear(a.w, b.w, c.w, d.w, fx, fy)};
 }
 
 SHARED_FN Vec4f sample_nearest(const Texture& t, float u, float v) {
