@@ -74,7 +74,9 @@ std::string video_filter(const VideoPlan& plan) {
     if (plan.codec == VideoCodec::gif) return "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=sierra2_4a";
     if (is_rgb(plan.pixel_format)) return "format=" + plan.pixel_format;
     const bool full_range = plan.pixel_format.starts_with("yuvj");
-    return fmt::format("scale=in_range=pc:out_color_matrix=bt709:out_range={}:flags=bicubic+accurate_rnd+full_chroma_int,format={}",
+    // ProRes takes its tags from the frames (setparams), the others take theirs from the command line.
+    return fmt::format("scale=in_range=pc:out_color_matrix=bt709:out_range={0}:flags=bicubic+accurate_rnd+full_chroma_int,format={1},"
+                       "setparams=range={0}:color_primaries=bt709:color_trc=bt709:colorspace=bt709",
                        full_range ? "pc" : "tv", plan.pixel_format);
 }
 

@@ -108,10 +108,39 @@ Bytes encoded(const std::string& format, const OIIO::ImageSpec& spec, OIIO::Type
     return bytes;
 }
 
+/// How every complete file of a format begins and ends: PNG with its IEND chunk, JPEG with its end marker. Looked at before
+/// the libraries are, because libpng prints what it thinks of a truncated file.
+struct Ending {
+    std::string_view begin, end;
+};
+constexpr std::string_view kPngEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+constexpr Ending kEndings[] = {{"\x89PNG", kPngEnd}, {"\xff\xd8\xff", "\xff\xd9"}};
+
+std::string bytes_of(std::ifstream& file, std::streamoff offset, std::ios::seekdir from, std::size_t count) {
+    std::string bytes(count, '\0');
+    file.clear();
+    file.seekg(offset, from);
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(count))) return {};
+    return bytes;
+}
+
+enum class End { missing, there, unknown };
+
+End end_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    for (const Ending& ending : kEndings) {
+        if (bytes_of(file, 0, std::ios::beg, ending.begin.size()) != ending.begin) continue;
+        const auto size = ending.end.size();
+        return bytes_of(file, -static_cast<std::streamoff>(size), std::ios::end, size) == ending.end ? End::there : End::missing;
+    }
+    return End::unknown;
+}
+
 using Input = std::unique_ptr<OIIO::ImageInput>;
 
 /// @throws InputError
 Input open_image(const fs::path& path) {
+    if (end_of(path) == End::missing) throw InputError(fmt::format("the image '{}' is incomplete", path.string()));
     OIIO::ImageSpec wanted;
     wanted.attribute("oiio:UnassociatedAlpha", 1);
     Input input = OIIO::ImageInput::open(path.string(), &wanted);
@@ -136,22 +165,6 @@ void add_from_json(Metadata& metadata, const std::string& text) {
     if (!root.is_object() || !root.contains(kJsonRoot) || !root[kJsonRoot].is_object()) return;
     for (const auto& [key, value] : root[kJsonRoot].items())
         if (value.is_string()) metadata[key] = value.get<std::string>();
-}
-
-/// The last bytes of a file that are the same for every complete PNG (its IEND chunk) or JPEG (its end marker).
-struct Ending {
-    std::string_view format;
-    std::string_view bytes;
-};
-constexpr std::string_view kPngEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
-constexpr std::string_view kJpegEnd("\xff\xd9", 2);
-constexpr Ending kEndings[] = {{"png", kPngEnd}, {"jpeg", kJpegEnd}};
-
-bool ends_with(const fs::path& path, std::string_view bytes) {
-    std::ifstream file(path, std::ios::binary);
-    file.seekg(-static_cast<std::streamoff>(bytes.size()), std::ios::end);
-    std::string tail(bytes.size(), '\0');
-    return file.read(tail.data(), static_cast<std::streamsize>(tail.size())) && tail == bytes;
 }
 
 /// Rows are written from the top, so what is missing at a file's end is the last row.
@@ -184,7 +197,7 @@ public:
         const OIIO::ImageSpec& spec = input->spec();
         Image image{spec.width, spec.height, spec.channelnames, {}};
         image.pixels.resize(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-        if (!is_complete(path) || !input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+        if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
             throw InputError(fmt::format("the image '{}' is incomplete: {}", path.string(), input->geterror()));
         if (has_unassociated_alpha(spec)) premultiply(image, static_cast<std::size_t>(spec.alpha_channel));
         return image;
@@ -202,12 +215,12 @@ public:
     }
 
     bool is_complete(const fs::path& path) const override {
+        const End end = end_of(path);
+        if (end != End::unknown) return end == End::there;
         const Input input = OIIO::ImageInput::open(path.string());
-        if (!input) return static_cast<void>(OIIO::geterror()), false;
-        for (const Ending& ending : kEndings)
-            if (ending.format == input->format_name()) return ends_with(path, ending.bytes);
-        const bool complete = has_last_row(*input);
-        static_cast<void>(input->geterror());   // taken, so that the library does not print it
+        const bool complete = input && has_last_row(*input);
+        // Taken, so that the library does not print them.
+        static_cast<void>(input ? input->geterror() : OIIO::geterror());
         return complete;
     }
 };

@@ -70,9 +70,8 @@ inline __attribute__((always_inline)) float fast_pow(float x, float p) {
 inline __attribute__((always_inline)) float srgb_encoded(float linear) {
     const float x = clamp01(linear);
     const float straight = 12.92f * x, curved = 1.055f * fast_pow(x, 1.0f / 2.4f) - 0.055f;
-    // The curve's series may miss 1 by a rounding; white must be white.
-    const float inside = curved < 1 ? curved : 1;
-    return x <= 0.0031308f ? straight : inside;
+    const float inside = x <= 0.0031308f ? straight : curved;
+    return x < 1 ? inside : 1.0f;   // the curve misses 1 by a rounding, and white must be white
 }
 
 void encode_srgb(Block& p) {
