@@ -82,7 +82,7 @@ def c_array(name, values, comment):
 
 
 def header(title, *arrays):
-    return f"// {title}\n// Written by tools/make_tables.py.\n#pragma once\n\nnamespace kadr::kernels {{\n\n" + "\n".join(arrays) + \
+    return f"// {title}\n// Written by tools/make_tables.py.\n// clang-format off\n#pragma once\n\nnamespace kadr::kernels {{\n\n" + "\n".join(arrays) + \
         "\n}  // namespace kadr::kernels\n"
 
 

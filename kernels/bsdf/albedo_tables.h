@@ -1,5 +1,6 @@
 // Directional albedos of the GGX reflection lobe (Smith, height-correlated).
 // Written by tools/make_tables.py.
+// clang-format off
 #pragma once
 
 namespace kadr::kernels {

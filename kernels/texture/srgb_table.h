@@ -1,5 +1,6 @@
 // The sRGB transfer of 8-bit values (IEC 61966-2-1).
 // Written by tools/make_tables.py.
+// clang-format off
 #pragma once
 
 namespace kadr::kernels {
