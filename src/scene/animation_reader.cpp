@@ -1,0 +1,182 @@
+#include "scene/animation_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "scene/accessor.h"
+
+namespace kadr {
+
+namespace {
+
+struct Samples {
+    std::vector<float> times, values;
+    Interpolation interpolation = Interpolation::linear;
+};
+
+Interpolation interpolation_of(const std::string& name) {
+    if (name == "STEP") return Interpolation::step;
+    return name == "CUBICSPLINE" ? Interpolation::cubic : Interpolation::linear;
+}
+
+/// One animation sampler, checked.
+class SamplerReader {
+public:
+    SamplerReader(const GltfDocument& document, std::size_t animation, std::size_t sampler)
+        : document_(document), sampler_(document.model().animations[animation].samplers[sampler]),
+          pointer_(fmt::format("/animations/{}/samplers/{}", animation, sampler)) {}
+
+    Samples read(int components) const {
+        Samples samples;
+        samples.interpolation = interpolation_of(sampler_.interpolation);
+        samples.times = read_times();
+        samples.values = read_values(components, samples);
+        return samples;
+    }
+
+private:
+    const tinygltf::Accessor& accessor(int index) const { return document_.model().accessors[static_cast<std::size_t>(index)]; }
+
+    std::vector<float> read_times() const {
+        const tinygltf::Accessor& input = accessor(sampler_.input);
+        if (input.type != TINYGLTF_TYPE_SCALAR || input.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+            document_.fail(pointer_ + "/input", "is " + describe_accessor(input), "expected SCALAR of float: seconds");
+        std::vector<float> times = read_floats(document_, sampler_.input);
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            if (!std::isfinite(times[i])) document_.fail(pointer_ + "/input", fmt::format("element {} is not finite", i), "expected seconds");
+            if (i > 0 && times[i] <= times[i - 1])
+                document_.fail(pointer_ + "/input", fmt::format("element {} is {} s after {} s", i, times[i], times[i - 1]), "expected strictly increasing times");
+        }
+        return times;
+    }
+
+    std::vector<float> read_values(int components, const Samples& samples) const {
+        const tinygltf::Accessor& output = accessor(sampler_.output);
+        const int expected_type = components == 4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+        const bool number = output.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+                            (output.normalized && output.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+        if (output.type != expected_type || !number)
+            document_.fail(pointer_ + "/output", "is " + describe_accessor(output), fmt::format("expected VEC{} of float or of normalized integers", components));
+        const std::size_t keys = samples.times.size(), expected = samples.interpolation == Interpolation::cubic ? 3 * keys : keys;
+        if (output.count != expected)
+            document_.fail(pointer_ + "/output", fmt::format("has {} elements for {} times", output.count, keys), fmt::format("expected {}", expected));
+        std::vector<float> values = read_floats(document_, sampler_.output);
+        const auto bad = std::find_if(values.begin(), values.end(), [](float f) { return !std::isfinite(f); });
+        if (bad != values.end())
+            document_.fail(pointer_ + "/output", fmt::format("element {} is not finite", (bad - values.begin()) / components), "expected finite numbers");
+        return values;
+    }
+
+    const GltfDocument& document_;
+    const tinygltf::AnimationSampler& sampler_;
+    std::string pointer_;
+};
+
+glm::dvec3 value_at(const float* v, glm::dvec3) { return {v[0], v[1], v[2]}; }
+glm::dquat value_at(const float* v, glm::dquat) { return {v[3], v[0], v[1], v[2]}; }
+
+template <class T>
+Track<T> make_track(const Samples& samples, std::size_t components) {
+    Track<T> track;
+    track.interpolation = samples.interpolation;
+    const bool cubic = samples.interpolation == Interpolation::cubic;
+    for (std::size_t i = 0; i < samples.times.size(); ++i) {
+        Key<T> key;
+        key.time_s = samples.times[i];
+        const float* values = &samples.values[i * components * (cubic ? 3 : 1)];
+        key.value = value_at(cubic ? values + components : values, T{});
+        if (cubic) {
+            key.in_tangent = value_at(values, T{});
+            key.out_tangent = value_at(values + 2 * components, T{});
+        }
+        track.keys.push_back(std::move(key));
+    }
+    return track;
+}
+
+class AnimationReader {
+public:
+    AnimationReader(GltfDocument& document, std::size_t index) : document_(document), source_(document.model().animations[index]), index_(index) {
+        clip_.name = source_.name;
+        clip_.begin_s = std::numeric_limits<double>::infinity();
+        clip_.end_s = -clip_.begin_s;
+    }
+
+    Clip read() {
+        for (std::size_t i = 0; i < source_.channels.size(); ++i) channel(i);
+        if (clip_.begin_s > clip_.end_s) clip_.begin_s = clip_.end_s = 0;
+        return std::move(clip_);
+    }
+
+private:
+    std::string pointer(std::size_t channel) const { return fmt::format("/animations/{}/channels/{}", index_, channel); }
+
+    void warn(std::size_t channel, const std::string& found) {
+        document_.warnings.push_back(document_.warning(pointer(channel), found + " and is ignored"));
+    }
+
+    void channel(std::size_t i) {
+        const tinygltf::AnimationChannel& channel = source_.channels[i];
+        const std::string& path = channel.target_path;
+        if (static_cast<std::size_t>(channel.sampler) >= source_.samplers.size())
+            document_.fail(pointer(i) + "/sampler", fmt::format("is {}", channel.sampler), fmt::format("expected an index into the animation's {} samplers", source_.samplers.size()));
+        if (path == "pointer") return warn(i, "animates a property through KHR_animation_pointer, which is not supported,");
+        if (path == "weights") return warn(i, "animates morph weights of a node without morph targets");
+        if (path != "translation" && path != "rotation" && path != "scale")
+            document_.fail(pointer(i) + "/target/path", fmt::format("is \"{}\"", path.substr(0, 60)), "expected one of: translation rotation scale weights");
+        if (channel.target_node < 0) return warn(i, "names no node");
+        add(i, channel);
+    }
+
+    void add(std::size_t i, const tinygltf::AnimationChannel& channel) {
+        if (!document_.model().nodes[static_cast<std::size_t>(channel.target_node)].matrix.empty())
+            document_.fail(pointer(i) + "/target/node", fmt::format("is {}, a node with a matrix", channel.target_node), "expected a node with translation, rotation and scale");
+        NodeChannels& node = channels_of(channel.target_node);
+        const bool rotation = channel.target_path == "rotation";
+        const bool taken = rotation ? node.rotation.has_value() : channel.target_path == "scale" ? node.scale.has_value() : node.translation.has_value();
+        if (taken)
+            document_.fail(pointer(i) + "/target", fmt::format("animates {} of node {} again", channel.target_path, channel.target_node), "expected one channel for each property");
+        const Samples samples = SamplerReader(document_, index_, static_cast<std::size_t>(channel.sampler)).read(rotation ? 4 : 3);
+        clip_.begin_s = std::min<double>(clip_.begin_s, samples.times.front());
+        clip_.end_s = std::max<double>(clip_.end_s, samples.times.back());
+        if (rotation) node.rotation = rotation_track(i, samples);
+        else if (channel.target_path == "scale") node.scale = make_track<glm::dvec3>(samples, 3);
+        else node.translation = make_track<glm::dvec3>(samples, 3);
+    }
+
+    Track<glm::dquat> rotation_track(std::size_t channel, const Samples& samples) const {
+        Track<glm::dquat> track = make_track<glm::dquat>(samples, 4);
+        for (std::size_t i = 0; i < track.keys.size(); ++i) {
+            const double length = glm::length(track.keys[i].value);
+            if (!(length > 1e-6)) document_.fail(pointer(channel), fmt::format("rotates by key {}, a quaternion of length 0", i), "expected unit quaternions");
+            if (samples.interpolation != Interpolation::cubic) track.keys[i].value /= length;  // tangents belong to the value as it is
+        }
+        return track;
+    }
+
+    NodeChannels& channels_of(int node) {
+        const auto [place, added] = place_of_.try_emplace(node, clip_.channels.size());
+        if (added) clip_.channels.emplace_back().node = node;
+        return clip_.channels[place->second];
+    }
+
+    GltfDocument& document_;
+    const tinygltf::Animation& source_;
+    std::size_t index_;
+    Clip clip_;
+    std::map<int, std::size_t> place_of_;
+};
+
+}  // namespace
+
+std::vector<Clip> read_animations(GltfDocument& document) {
+    std::vector<Clip> clips;
+    for (std::size_t i = 0; i < document.model().animations.size(); ++i) clips.push_back(AnimationReader(document, i).read());
+    return clips;
+}
+
+}  // namespace kadr

@@ -1,0 +1,111 @@
+#include "scene/material_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kadr {
+
+namespace {
+
+using kernels::AlphaMode;
+using kernels::TextureSlot;
+
+const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    const auto found = extensions.find(name);
+    return found == extensions.end() ? nullptr : &found->second;
+}
+
+double number(const tinygltf::Value& object, const char* key, double otherwise) {
+    return object.Has(key) && object.Get(key).IsNumber() ? object.Get(key).GetNumberAsDouble() : otherwise;
+}
+
+double number_at(const tinygltf::Value& object, const char* key, int index, double otherwise) {
+    if (!object.Has(key) || !object.Get(key).IsArray() || object.Get(key).ArrayLen() <= static_cast<std::size_t>(index)) return otherwise;
+    return object.Get(key).Get(index).GetNumberAsDouble();
+}
+
+/// uv' = T * R * S * uv, where a positive rotation turns the coordinates counter-clockwise as seen in an image whose v grows
+/// downward.  Source: KHR_texture_transform (the text; its TextureTransformTest tells the sign).
+void apply_transform(const tinygltf::Value& transform, TextureSlot& slot) {
+    const double rotation = number(transform, "rotation", 0);
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    const double su = number_at(transform, "scale", 0, 1), sv = number_at(transform, "scale", 1, 1);
+    slot.m00 = static_cast<float>(c * su);
+    slot.m01 = static_cast<float>(s * sv);
+    slot.m02 = static_cast<float>(number_at(transform, "offset", 0, 0));
+    slot.m10 = static_cast<float>(-s * su);
+    slot.m11 = static_cast<float>(c * sv);
+    slot.m12 = static_cast<float>(number_at(transform, "offset", 1, 0));
+}
+
+template <class Info>
+int uv_set_of(const Info& info) {
+    const tinygltf::Value* transform = extension(info.extensions, "KHR_texture_transform");
+    return transform ? static_cast<int>(number(*transform, "texCoord", info.texCoord)) : info.texCoord;
+}
+
+struct SlotReader {
+    const GltfDocument& document;
+    std::string pointer;  ///< of the material
+    TextureSet& textures;
+
+    template <class Info>
+    TextureSlot read(const Info& info, const char* member, bool srgb) const {
+        TextureSlot slot;
+        if (info.index < 0) return slot;
+        slot.uv_set = uv_set_of(info);
+        if (slot.uv_set > 1)
+            document.fail(fmt::format("{}/{}", pointer, member), fmt::format("uses TEXCOORD_{}: more than two sets of texture coordinates are not supported yet", slot.uv_set),
+                          "expected texCoord 0 or 1");
+        slot.texture = textures.use(info.index, srgb);
+        if (const tinygltf::Value* transform = extension(info.extensions, "KHR_texture_transform")) apply_transform(*transform, slot);
+        return slot;
+    }
+};
+
+AlphaMode alpha_mode(const std::string& name) {
+    if (name == "MASK") return AlphaMode::mask;
+    return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+}
+
+kernels::Vec3f vector3(const std::vector<double>& values, float otherwise) {
+    if (values.size() < 3) return {otherwise, otherwise, otherwise};
+    return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
+}
+
+}  // namespace
+
+int normal_uv_set(const GltfDocument& document, int material) {
+    if (material < 0) return -1;
+    const tinygltf::NormalTextureInfo& info = document.model().materials[static_cast<std::size_t>(material)].normalTexture;
+    return info.index < 0 ? -1 : uv_set_of(info);
+}
+
+kernels::Material read_material(const GltfDocument& document, std::size_t index, TextureSet& textures) {
+    const tinygltf::Material& source = document.model().materials[index];
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const SlotReader slots{document, fmt::format("/materials/{}", index), textures};
+    kernels::Material material;
+    material.base_color = vector3(pbr.baseColorFactor, 1);
+    material.alpha = pbr.baseColorFactor.size() == 4 ? static_cast<float>(pbr.baseColorFactor[3]) : 1.0f;
+    material.metallic = static_cast<float>(pbr.metallicFactor);
+    material.roughness = static_cast<float>(pbr.roughnessFactor);
+    material.emission = vector3(source.emissiveFactor, 0);
+    if (const tinygltf::Value* strength = extension(source.extensions, "KHR_materials_emissive_strength"))
+        material.emission = material.emission * static_cast<float>(number(*strength, "emissiveStrength", 1));
+    material.unlit = extension(source.extensions, "KHR_materials_unlit") != nullptr;
+    material.alpha_mode = alpha_mode(source.alphaMode);
+    material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+    material.double_sided = source.doubleSided;
+    material.normal_scale = static_cast<float>(source.normalTexture.scale);
+    material.occlusion_strength = static_cast<float>(source.occlusionTexture.strength);
+    material.base_color_texture = slots.read(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", true);
+    material.metallic_roughness_texture = slots.read(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture", false);
+    material.normal_texture = slots.read(source.normalTexture, "normalTexture", false);
+    material.emissive_texture = slots.read(source.emissiveTexture, "emissiveTexture", true);
+    material.occlusion_texture = slots.read(source.occlusionTexture, "occlusionTexture", false);
+    return material;
+}
+
+}  // namespace kadr
