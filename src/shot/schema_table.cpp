@@ -32,7 +32,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "scenes.transform.scale", .forms = kNumber | kVector3 | kTrack, .fallback = "1", .doc = "size factor, the same for all axes or one for each; never zero", .example = "scale: [1, 2, 1]"},
     {.path = "scenes.animation", .forms = kSection, .doc = "clips of the glTF file", .example = "animation: { clip: Walk, start: 0.5 s, speed: 2 }"},
     {.path = "scenes.animation.clip", .forms = kText | kInteger | kChoice, .choices = "all|none", .fallback = "all", .doc = "a clip's name or index, or all of them, or none", .example = "clip: Walk"},
-    {.path = "scenes.animation.start", .forms = kNumber, .quantity = time, .fallback = "0 s", .doc = "time of the shot at which the clip begins", .example = "start: 12 f"},
+    {.path = "scenes.animation.start", .forms = kNumber, .quantity = time, .fallback = "0 s", .doc = "time of the clip when the shot is at 0 s", .example = "start: 12 f"},
     {.path = "scenes.animation.speed", .forms = kNumber, .low = -1000, .high = 1000, .fallback = "1", .doc = "clip seconds a second", .example = "speed: 0.5"},
     {.path = "scenes.animation.loop", .forms = kChoice, .choices = "hold|!repeat|!pingpong", .fallback = "hold", .doc = "what follows the end of the clip", .example = "loop: hold"},
     {.path = "scenes.nodes", .doc = "override or animate nodes by name", .built = false},

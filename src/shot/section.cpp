@@ -13,7 +13,8 @@ namespace kadr {
 
 namespace {
 
-constexpr std::size_t kMostErrors = 100;
+constexpr std::size_t kMostErrors = 100;       // shown
+constexpr std::size_t kMostKeptErrors = 1000;  // sorted, to show the first of
 constexpr std::size_t kLongestShown = 60;
 
 std::string shortened(const std::string& text) { return text.size() <= kLongestShown ? text : text.substr(0, kLongestShown) + "..."; }
@@ -77,7 +78,13 @@ std::string did_you_mean_file(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool Problems::full() const { return errors_.size() >= kMostKeptErrors; }
+
 void Problems::error(const YamlPlace& place, std::string found, std::string expected) {
+    if (full()) {
+        ++not_kept_;
+        return;
+    }
     errors_.push_back({place, diagnostic_at(place, std::move(found), std::move(expected))});
 }
 
@@ -103,7 +110,7 @@ std::vector<Diagnostic> Problems::take_errors() {
     }
     if (errors_.size() > kMostErrors) {
         Diagnostic rest;
-        rest.found = fmt::format("{} more errors are not shown", errors_.size() - kMostErrors);
+        rest.found = fmt::format("{} more errors are not shown", errors_.size() - kMostErrors + not_kept_);
         result.push_back(std::move(rest));
     }
     return result;
@@ -158,6 +165,7 @@ void Section::check_key(const YamlEntry& entry) const {
 }
 
 void Section::unknown_key(const YamlEntry& entry) const {
+    if (context_->problems.full()) return context_->problems.error(entry.key.place, {});  // only counted
     std::vector<std::string> names;
     for (const FieldSpec* field : fields_below(schema_path_)) names.emplace_back(key_of(*field));
     const auto nearest = nearest_name(entry.key.text, names);

@@ -19,6 +19,8 @@ public:
     void error(const YamlPlace& place, std::string found, std::string expected = {});
     void warning(const YamlPlace& place, std::string found, std::string expected = {});
     bool any() const { return !errors_.empty(); }
+    /// Whether so many were found that more would only cost time: from here on errors are counted, not kept.
+    bool full() const;
     /// Errors sorted by place, cut after a hundred (the last then says how many are left).
     std::vector<Diagnostic> take_errors();
     std::vector<Diagnostic> take_warnings() { return std::move(warnings_); }
@@ -29,6 +31,7 @@ private:
         Diagnostic diagnostic;
     };
     std::vector<Error> errors_;
+    std::size_t not_kept_ = 0;
     std::vector<Diagnostic> warnings_;
 };
 

@@ -76,8 +76,7 @@ private:
         return i == 0 || std::string_view(":,[{-?\n").find(text_[i - 1]) != std::string_view::npos;
     }
     void skip_to(char end) {
-        const std::size_t found = text_.find(end, at_ + 1);
-        if (found != std::string_view::npos) at_ = found;
+        at_ = std::min(text_.find(end, at_ + 1), text_.size() - 1);  // unclosed: nothing more to see
     }
 
     std::string_view text_;

@@ -56,7 +56,7 @@ struct YamlEntry {
 };
 
 /// Limits against hostile files; far above what a shot needs.
-inline constexpr std::size_t kMostYamlBytes = 4u << 20;
+inline constexpr std::size_t kMostYamlBytes = 2u << 20;
 inline constexpr std::size_t kMostYamlNodes = 1'000'000;
 inline constexpr std::size_t kMostAliasNodes = 100'000;  ///< values copied by aliases
 inline constexpr int kDeepestYaml = 64;

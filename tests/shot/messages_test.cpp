@@ -637,7 +637,7 @@ TEST_F(Messages, RefuseAliasBombs) {
 }
 
 TEST_F(Messages, RefuseHugeFiles) {
-    EXPECT_EQ(errors_of(std::string(kBase) + "# " + std::string(4u << 20, 'x')), "shot.yaml: error: the file has 4194343 bytes\n  expected a shot file of at most 4 MiB");
+    EXPECT_EQ(errors_of(std::string(kBase) + "# " + std::string(2u << 20, 'x')), "shot.yaml: error: the file has 2097191 bytes\n  expected a shot file of at most 2 MiB");
 }
 
 TEST_F(Messages, StopAfterAHundred) {
