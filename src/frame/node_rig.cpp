@@ -82,11 +82,18 @@ NodeRig::NodeRig(const Shot& shot, const Scene& scene, const std::vector<std::ve
     world_.assign(count, glm::dmat4(1));
     for (const int node : order_) {
         const int parent = scene.nodes[index(node)].parent;
-        moving_[index(node)] = animated_index_[index(node)] >= 0 || (parent >= 0 ? moving_[index(parent)] : files_[index(file_[index(node)])].moves);
+        moving_[index(node)] = animates(node) || (parent >= 0 ? moving_[index(parent)] : files_[index(file_[index(node)])].moves);
         local_[index(node)] = local_transform(node, 0);
         const glm::dmat4 above = parent >= 0 ? world_[index(parent)] : scene_transform(file_[index(node)], 0);
         world_[index(node)] = above * local_[index(node)];
     }
+}
+
+bool NodeRig::animates(int node) const {
+    const int slot = animated_index_[index(node)];
+    if (slot < 0) return false;
+    const Animated& a = animated_[index(slot)];
+    return a.translation_track || a.rotation_track || a.scale_track;
 }
 
 void NodeRig::order_nodes() {
@@ -160,8 +167,7 @@ glm::dmat4 NodeRig::local_transform(int node, double time_s) const {
 glm::dmat4 NodeRig::node_transform(int node, double time_s) const {
     glm::dmat4 result(1);
     for (; moves(node); node = scene_->nodes[index(node)].parent) {
-        const bool animated = animated_index_[index(node)] >= 0;
-        result = (animated ? local_transform(node, time_s) : local_[index(node)]) * result;
+        result = (animates(node) ? local_transform(node, time_s) : local_[index(node)]) * result;
         if (scene_->nodes[index(node)].parent < 0) return scene_transform(file_[index(node)], time_s) * result;
     }
     return world_[index(node)] * result;
@@ -174,7 +180,7 @@ std::vector<glm::dmat4> NodeRig::all_transforms(double time_s) const {
     for (const int node : order_) {
         if (!moves(node)) continue;
         const int parent = scene_->nodes[index(node)].parent;
-        const glm::dmat4 local = animated_index_[index(node)] >= 0 ? local_transform(node, time_s) : local_[index(node)];
+        const glm::dmat4 local = animates(node) ? local_transform(node, time_s) : local_[index(node)];
         world[index(node)] = (parent >= 0 ? world[index(parent)] : above[index(file_[index(node)])]) * local;
     }
     return world;
@@ -207,7 +213,7 @@ void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<gl
     glm::dmat4 above(1);
     for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
         const int node = selection.nodes[slot];
-        const glm::dmat4 local = animated_index_[index(node)] >= 0 ? local_transform(node, time_s) : local_[index(node)];
+        const glm::dmat4 local = animates(node) ? local_transform(node, time_s) : local_[index(node)];
         const int parent = scene_->nodes[index(node)].parent;
         if (selection.parent_slot[slot] >= 0) {
             world[slot] = world[index(selection.parent_slot[slot])] * local;

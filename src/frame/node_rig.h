@@ -69,6 +69,7 @@ private:
     void order_nodes();
     void bind_clips(const std::vector<std::vector<int>>& clips);
     void bind_channels(const NodeChannels& channels);
+    bool animates(int node) const;  ///< whether a clip changes its own transform over time
     glm::dmat4 local_transform(int node, double time_s) const;
     Activity own_activity(int node, double begin_s, double end_s) const;
 
