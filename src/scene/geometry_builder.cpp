@@ -177,11 +177,12 @@ private:
     void check_order(const std::vector<std::uint32_t>& order, int type) const {
         const std::size_t vertices = result_.data.positions.size();
         const std::uint32_t largest = *std::max_element(order.begin(), order.end());
-        if (largest < vertices) return;
-        const std::size_t at = static_cast<std::size_t>(std::max_element(order.begin(), order.end()) - order.begin());
+        // The largest value of the type restarts primitives in some interfaces: glTF forbids it even where a vertex has that number.
         const std::uint32_t restart = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 0xFFu : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0xFFFFu : 0xFFFFFFFFu;
+        if (largest < vertices && largest != restart) return;
+        const auto at = std::max_element(order.begin(), order.end()) - order.begin();
         const std::string found = largest == restart ? fmt::format("element {} is the primitive restart value {}", at, largest) : fmt::format("element {} is {}", at, largest);
-        document_.fail(pointer_ + "/indices", found, fmt::format("expected vertices 0 to {}", vertices - 1));
+        document_.fail(pointer_ + "/indices", found, fmt::format("expected vertices 0 to {}", std::min<std::size_t>(vertices, restart) - 1));
     }
 
     void build_triangles() {

@@ -202,6 +202,7 @@ std::string_view GltfDocument::split_container() {
 }
 
 void GltfDocument::parse(std::string_view text) {
+    if (text.empty()) fail({}, bytes_.empty() ? "is empty" : "holds no JSON", "expected a glTF 2.0 file (.gltf or .glb)");
     if (text.size() > kLargestJson && !binary_chunk_.empty())
         fail({}, fmt::format("holds {} bytes of JSON", text.size()), "expected at most 256 MiB");
     if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
@@ -274,7 +275,15 @@ void GltfDocument::check_features() const {
 }
 
 void GltfDocument::load_model() {
-    const std::string text = known_members(json_).dump(-1, ' ', false, Json::error_handler_t::replace);
+    Json known = known_members(json_);
+    const auto each_primitive = [](Json& document, const auto& visit) {
+        if (!document.contains("meshes")) return;
+        for (std::size_t m = 0; m < document["meshes"].size(); ++m)
+            for (std::size_t p = 0; p < document["meshes"][m]["primitives"].size(); ++p) visit(m, p, document["meshes"][m]["primitives"][p]);
+    };
+    // tinygltf refuses index accessors that are sparse alone; they are put back below.
+    each_primitive(known, [](std::size_t, std::size_t, Json& primitive) { primitive.erase("indices"); });
+    const std::string text = known.dump(-1, ' ', false, Json::error_handler_t::replace);
     tinygltf::TinyGLTF reader;
     std::string errors, notes;
     bool done = false;
@@ -298,6 +307,9 @@ void GltfDocument::load_model() {
     same("cameras", model_.cameras.size());
     same("scenes", model_.scenes.size());
     same("animations", model_.animations.size());
+    each_primitive(json_, [&](std::size_t m, std::size_t p, const Json& primitive) {
+        model_.meshes[m].primitives.at(p).indices = static_cast<int>(unsigned_or(primitive, "indices", static_cast<std::size_t>(-1)));
+    });
 }
 
 ByteView GltfDocument::resolve(const std::string& uri, std::string_view pointer, Bytes& storage) const {
