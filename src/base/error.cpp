@@ -10,7 +10,7 @@ namespace kadr {
 namespace {
 
 constexpr std::string_view kExcerptIndent = "    ";
-constexpr std::size_t kLongestExcerpt = 160;   // characters; longer lines are shown around the caret
+constexpr std::size_t kLongestExcerpt = 160;  // characters; longer lines are shown around the caret
 constexpr std::size_t kContextBeforeCaret = 60;
 
 /// A file below the working folder is shown relative to it: what the user typed, and what editors can follow.
@@ -58,7 +58,8 @@ std::string excerpt_of(const Diagnostic& diagnostic) {
     std::string under(before.size(), ' ');
     for (std::size_t i = first; i < last; ++i) {
         shown += all[i];
-        if (i < caret) under += all[i] == "\t" ? "\t" : " ";  // a tab stays one, so that the caret stays below its column
+        if (i < caret)
+            under += all[i] == "\t" ? "\t" : " ";  // a tab stays one, so that the caret stays below its column
     }
     if (last < all.size()) shown += "...";
     if (diagnostic.where.column <= 0) return fmt::format("{}{}\n", kExcerptIndent, shown);

@@ -20,10 +20,10 @@ struct SourceLocation {
 /// expected and what to do.
 struct Diagnostic {
     SourceLocation where;
-    std::string found;     ///< "shutter.angle is 540 deg"; no trailing full stop
-    std::string excerpt;   ///< the offending line of the file, untrimmed; empty when there is none
-    int excerpt_length = 1; ///< characters to underline from where.column on
-    std::string expected;  ///< "expected 0 to 360 deg; use 360 deg to ..."; may be empty
+    std::string found;       ///< "shutter.angle is 540 deg"; no trailing full stop
+    std::string excerpt;     ///< the offending line of the file, untrimmed; empty when there is none
+    int excerpt_length = 1;  ///< characters to underline from where.column on
+    std::string expected;    ///< "expected 0 to 360 deg; use 360 deg to ..."; may be empty
     bool warning = false;
 
     /// The message as a person reads it: `file:line:column: error: found`, excerpt, caret line, expectation.

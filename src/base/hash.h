@@ -22,7 +22,7 @@ public:
     Hasher(const Hasher&) = delete;
     Hasher& operator=(const Hasher&) = delete;
     void add(std::string_view bytes);
-    void add(double value);        ///< by bits; -0 counts as 0
+    void add(double value);  ///< by bits; -0 counts as 0
     void add(std::int64_t value);
     Hash finish() const;
 

@@ -37,9 +37,17 @@ void append_rows(std::string& text, std::string_view section, std::size_t indent
 std::string units_text() {
     std::string text = "\nUnits (the first is that of a bare number)\n";
     constexpr std::pair<const char*, Quantity> kRows[] = {
-        {"angles", Quantity::angle}, {"times", Quantity::time}, {"lengths", Quantity::length}, {"lenses and sensors", Quantity::lens},
-        {"pixels", Quantity::pixels}, {"shutter", Quantity::frames}, {"illuminance", Quantity::illuminance}, {"intensity", Quantity::intensity},
-        {"luminance", Quantity::luminance}, {"power", Quantity::power}, {"exposure", Quantity::stops},
+        {"angles", Quantity::angle},
+        {"times", Quantity::time},
+        {"lengths", Quantity::length},
+        {"lenses and sensors", Quantity::lens},
+        {"pixels", Quantity::pixels},
+        {"shutter", Quantity::frames},
+        {"illuminance", Quantity::illuminance},
+        {"intensity", Quantity::intensity},
+        {"luminance", Quantity::luminance},
+        {"power", Quantity::power},
+        {"exposure", Quantity::stops},
     };
     for (const auto& [name, quantity] : kRows) text += fmt::format("  {:<18}  {}\n", name, unit_names(quantity));
     return text;
@@ -59,11 +67,15 @@ std::string whole_manual() {
 
 std::string one_field(const FieldSpec& field) {
     std::string text = fmt::format("{}\n  {}\n\n", field.path, field.doc);
-    if (!field.built) return text + "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n";
+    if (!field.built)
+        return text + "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n";
     text += fmt::format("  type     {}\n", type_text(field));
-    if (field.quantity != Quantity::number && !natural_unit(field.quantity).empty()) text += fmt::format("  units    {}\n", unit_names(field.quantity));
-    if (field.required) text += "  required\n";
-    else if (*field.fallback) text += fmt::format("  default  {}\n", field.fallback);
+    if (field.quantity != Quantity::number && !natural_unit(field.quantity).empty())
+        text += fmt::format("  units    {}\n", unit_names(field.quantity));
+    if (field.required)
+        text += "  required\n";
+    else if (*field.fallback)
+        text += fmt::format("  default  {}\n", field.fallback);
     if (*field.example) text += fmt::format("  example  {}\n", field.example);
     for (const Choice& choice : choices_of(field)) {
         if (!choice.built) text += fmt::format("  not supported yet: {}\n", choice.name);
@@ -98,7 +110,8 @@ std::string describe_schema(std::string_view key) {
     if (const FieldSpec* field = find_field(key)) return one_field(*field);
     const auto similar = similar_paths(key);
     throw InputError(fmt::format("the shot format has no key '{}'", key),
-                     similar.empty() ? "`kadr describe` lists all keys" : fmt::format("did you mean {}?", fmt::join(similar, " or ")));
+                     similar.empty() ? "`kadr describe` lists all keys"
+                                     : fmt::format("did you mean {}?", fmt::join(similar, " or ")));
 }
 
 }  // namespace kadr

@@ -15,8 +15,10 @@ Json section_schema(std::string_view path);
 
 Json number_schema(const FieldSpec& field, const char* type) {
     Json schema{{"type", type}};
-    if (field.low == kAboveZero) schema["exclusiveMinimum"] = 0;
-    else if (std::isfinite(field.low)) schema["minimum"] = field.low;
+    if (field.low == kAboveZero)
+        schema["exclusiveMinimum"] = 0;
+    else if (std::isfinite(field.low))
+        schema["minimum"] = field.low;
     if (std::isfinite(field.high)) schema["maximum"] = field.high;
     return schema;
 }
@@ -48,7 +50,9 @@ Json component_schema(const FieldSpec& field) {
     return any_of(std::move(forms));
 }
 
-Json list_schema(Json item, int size) { return {{"type", "array"}, {"items", std::move(item)}, {"minItems", size}, {"maxItems", size}}; }
+Json list_schema(Json item, int size) {
+    return {{"type", "array"}, {"items", std::move(item)}, {"minItems", size}, {"maxItems", size}};
+}
 
 Json words_schema(const FieldSpec& field) {
     Json words = Json::array();
@@ -59,11 +63,14 @@ Json words_schema(const FieldSpec& field) {
 }
 
 Json rotation_schema(const FieldSpec& field) {
-    return any_of({list_schema(component_schema(field), 3), list_schema({{"type", "number"}}, 4), {{"$ref", "#/$defs/rotation"}}});
+    return any_of({list_schema(component_schema(field), 3),
+                   list_schema({{"type", "number"}}, 4),
+                   {{"$ref", "#/$defs/rotation"}}});
 }
 
 Json frames_schema() {
-    const Json text{{"type", "string"}, {"pattern", "^ *-?[0-9]+(--?[0-9]+)?(x[0-9]+)?( *, *-?[0-9]+(--?[0-9]+)?(x[0-9]+)?)* *$"}};
+    const Json text{{"type", "string"},
+                    {"pattern", "^ *-?[0-9]+(--?[0-9]+)?(x[0-9]+)?( *, *-?[0-9]+(--?[0-9]+)?(x[0-9]+)?)* *$"}};
     const Json number{{"type", "integer"}};
     const Json list{{"type", "array"}, {"items", any_of({number, text})}, {"minItems", 1}};
     return any_of({number, text, list});
@@ -80,8 +87,14 @@ struct FormRow {
     FormSchema schema;
 };
 const FormRow kFormRows[] = {
-    {kText | kPath | kNode, [](const FieldSpec&) { return Json{{"type", "string"}, {"minLength", 1}}; }},
-    {kBoolean, [](const FieldSpec&) { return Json{{"type", "boolean"}}; }},
+    {kText | kPath | kNode,
+     [](const FieldSpec&) {
+         return Json{{"type", "string"}, {"minLength", 1}};
+     }},
+    {kBoolean,
+     [](const FieldSpec&) {
+         return Json{{"type", "boolean"}};
+     }},
     {kInteger, [](const FieldSpec& field) { return number_schema(field, "integer"); }},
     {kNumber, [](const FieldSpec& field) { return component_schema(field); }},
     {kVector2 | kSize2, [](const FieldSpec& field) { return list_schema(component_schema(field), 2); }},
@@ -89,11 +102,21 @@ const FormRow kFormRows[] = {
     {kRotation, rotation_schema},
     {kChoice, words_schema},
     {kSection, [](const FieldSpec& field) { return section_schema(field.path); }},
-    {kSections, [](const FieldSpec& field) { return Json{{"type", "array"}, {"items", section_schema(field.path)}}; }},
+    {kSections,
+     [](const FieldSpec& field) {
+         return Json{{"type", "array"}, {"items", section_schema(field.path)}};
+     }},
     {kTexts, texts_schema},
     {kFrames, [](const FieldSpec&) { return frames_schema(); }},
-    {kRational, [](const FieldSpec&) { return any_of({{{"type", "number"}, {"exclusiveMinimum", 0}}, {{"type", "string"}, {"pattern", "^[0-9]+/[0-9]+$"}}}); }},
-    {kKeys, [](const FieldSpec&) { return Json{{"type", "object"}, {"minProperties", 1}}; }},
+    {kRational,
+     [](const FieldSpec&) {
+         return any_of(
+             {{{"type", "number"}, {"exclusiveMinimum", 0}}, {{"type", "string"}, {"pattern", "^[0-9]+/[0-9]+$"}}});
+     }},
+    {kKeys,
+     [](const FieldSpec&) {
+         return Json{{"type", "object"}, {"minProperties", 1}};
+     }},
 };
 
 /// The track grammar around a value's own schema.
@@ -124,7 +147,8 @@ Json value_schema(const FieldSpec& field) {
 
 Json documented(const FieldSpec& field) {
     Json schema{{"description", std::string(field.doc) + (field.built ? "" : " (not supported yet)")}};
-    if (*field.fallback) schema["description"] = schema["description"].get<std::string>() + " (default: " + field.fallback + ")";
+    if (*field.fallback)
+        schema["description"] = schema["description"].get<std::string>() + " (default: " + field.fallback + ")";
     schema.update(value_schema(field));
     return schema;
 }

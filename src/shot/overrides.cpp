@@ -34,8 +34,10 @@ YamlNode map_node(const YamlSource& source) {
 std::vector<std::string> split_path(const std::string& path) {
     std::vector<std::string> parts(1);
     for (const char c : path) {
-        if (c == '.') parts.emplace_back();
-        else parts.back() += c;
+        if (c == '.')
+            parts.emplace_back();
+        else
+            parts.back() += c;
     }
     return parts;
 }
@@ -44,7 +46,8 @@ std::vector<std::string> split_path(const std::string& path) {
 YamlNode* find_item(YamlNode& list, const std::string& part) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-    if (error == std::errc() && end == part.data() + part.size()) return index < list.items.size() ? &list.items[index] : nullptr;
+    if (error == std::errc() && end == part.data() + part.size())
+        return index < list.items.size() ? &list.items[index] : nullptr;
     for (YamlNode& item : list.items) {
         const YamlNode* id = item.find("id");
         if (id && id->text == part) return &item;
@@ -53,7 +56,8 @@ YamlNode* find_item(YamlNode& list, const std::string& part) {
 }
 
 YamlEntry* find_entry(YamlNode& map, const std::string& key) {
-    const auto found = std::find_if(map.entries.begin(), map.entries.end(), [&](const YamlEntry& entry) { return entry.key.text == key; });
+    const auto found = std::find_if(map.entries.begin(), map.entries.end(),
+                                    [&](const YamlEntry& entry) { return entry.key.text == key; });
     return found == map.entries.end() ? nullptr : &*found;
 }
 
@@ -69,11 +73,13 @@ std::string item_names(const YamlNode& list) {
 /// One key path of the command line laid over the document.
 class Override {
 public:
-    Override(const YamlSource& source, std::string path) : source_(source), path_(std::move(path)), parts_(split_path(path_)) {}
+    Override(const YamlSource& source, std::string path)
+        : source_(source), path_(std::move(path)), parts_(split_path(path_)) {}
 
     std::optional<Diagnostic> put(YamlNode& root, YamlNode value) {
         if (std::any_of(parts_.begin(), parts_.end(), [](const std::string& part) { return part.empty(); })) {
-            return problem_of(source_, fmt::format("'{}' is not a key path", path_), "expected a path such as render.samples or lights.key.intensity");
+            return problem_of(source_, fmt::format("'{}' is not a key path", path_),
+                              "expected a path such as render.samples or lights.key.intensity");
         }
         YamlNode* node = &root;
         for (const std::string& part : parts_) {
@@ -90,11 +96,15 @@ private:
         if (node.kind == YamlNode::Kind::null) node = map_node(source_);
         if (node.is_list()) {
             YamlNode* item = find_item(node, part);
-            if (!item) problem_ = problem_of(source_, fmt::format("there is no entry '{}'", part), fmt::format("the list has: {}", item_names(node)));
+            if (!item)
+                problem_ = problem_of(source_, fmt::format("there is no entry '{}'", part),
+                                      fmt::format("the list has: {}", item_names(node)));
             return item;
         }
         if (!node.is_map()) {
-            problem_ = problem_of(source_, fmt::format("'{}' is below '{}', which is not a section here", part, node.text), "set the whole value instead, for example --set 'render.seed={ value: 7, animated: true }'");
+            problem_ =
+                problem_of(source_, fmt::format("'{}' is below '{}', which is not a section here", part, node.text),
+                           "set the whole value instead, for example --set 'render.seed={ value: 7, animated: true }'");
             return nullptr;
         }
         if (YamlEntry* entry = find_entry(node, part)) return &entry->value;
@@ -141,16 +151,20 @@ public:
             output = entry ? &entry->value : nullptr;
         }
         const YamlNode* old = output && output->is_map() ? output->find("file") : nullptr;
-        const bool same_kind = old && std::filesystem::path(old->text).extension() == std::filesystem::path(file).extension();
+        const bool same_kind =
+            old && std::filesystem::path(old->text).extension() == std::filesystem::path(file).extension();
         put_text("--video", same_kind ? "output.video.file" : "output.video", file, file != "none");
     }
     std::vector<Diagnostic> take_problems() { return std::move(problems_); }
 
 private:
-    const YamlSource& argument(std::string_view option, const std::string& value) { return document_.add_source(value, fmt::format("{} {}", option, value), folder_, true); }
+    const YamlSource& argument(std::string_view option, const std::string& value) {
+        return document_.add_source(value, fmt::format("{} {}", option, value), folder_, true);
+    }
     void put(const YamlSource& source, const std::string& path, YamlNode value) {
         if (value.kind == YamlNode::Kind::null) value.place = {&source, -1, 0, 0};
-        if (auto problem = Override(source, path).put(document_.root, std::move(value))) problems_.push_back(std::move(*problem));
+        if (auto problem = Override(source, path).put(document_.root, std::move(value)))
+            problems_.push_back(std::move(*problem));
     }
 
     YamlDocument& document_;
@@ -160,7 +174,8 @@ private:
 
 }  // namespace
 
-std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides, const std::filesystem::path& working_folder) {
+std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides,
+                                        const std::filesystem::path& working_folder) {
     Overrides apply(document, working_folder);
     for (const auto& [path, value] : overrides.set) apply.set(path, value);
     if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);

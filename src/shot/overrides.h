@@ -13,6 +13,7 @@ namespace kadr {
 /// messages about them name the argument ("--set render.samples=many").
 /// @param working_folder  where relative paths of the command line start
 /// @return what could not be laid over: malformed arguments, list entries that are not there
-std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides, const std::filesystem::path& working_folder);
+std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides,
+                                        const std::filesystem::path& working_folder);
 
 }  // namespace kadr

@@ -23,7 +23,8 @@ std::optional<std::variant<Track<double>, NodeReference>> read_focus(const Field
 
 void read_blades(const Field& field, CameraSpec& camera) {
     const auto blades = read_integer(field);
-    if (blades && (*blades == 1 || *blades == 2)) return field.error(fmt::format("{} is {}", field.name, *blades), "expected 0 for a round aperture, or 3 to 32");
+    if (blades && (*blades == 1 || *blades == 2))
+        return field.error(fmt::format("{} is {}", field.name, *blades), "expected 0 for a round aperture, or 3 to 32");
     assign(camera.blades, blades);
 }
 

@@ -37,7 +37,9 @@ constexpr KeyKinds kKeyKinds[] = {
 
 unsigned bit_of(LightKind kind) { return 1u << static_cast<unsigned>(kind); }
 
-std::string kind_name(LightKind kind) { return choices_of(*find_field("lights.type"))[static_cast<std::size_t>(kind)].name; }
+std::string kind_name(LightKind kind) {
+    return choices_of(*find_field("lights.type"))[static_cast<std::size_t>(kind)].name;
+}
 
 /// "an area", "a point or spot"
 std::string kind_names(unsigned kinds) {
@@ -53,8 +55,11 @@ std::string kind_names(unsigned kinds) {
 void check_keys_of_kind(const Section& section, LightKind kind) {
     for (const KeyKinds& row : kKeyKinds) {
         if ((row.kinds & bit_of(kind)) || !section.has(row.key)) continue;
-        section.context().problems.error(section.key_place(row.key), fmt::format("{}.{} does not apply to a light of type {}", section.name(), row.key, kind_name(kind)),
-                                         fmt::format("{} belongs to lights of type {}; remove the key or change the type", row.key, kind_names(row.kinds)));
+        section.context().problems.error(
+            section.key_place(row.key),
+            fmt::format("{}.{} does not apply to a light of type {}", section.name(), row.key, kind_name(kind)),
+            fmt::format("{} belongs to lights of type {}; remove the key or change the type", row.key,
+                        kind_names(row.kinds)));
     }
 }
 
@@ -88,8 +93,10 @@ void read_cone(const Section& section, LightSpec& light) {
     const bool constant = light.inner_rad.is_constant() && light.outer_rad.is_constant();
     if (!inner || !constant || light.inner_rad.keys.front().value <= light.outer_rad.keys.front().value) return;
     const Field outer_field = section["outer"];
-    section["inner"].error(fmt::format("{}.inner is {}, wider than outer at {}", section.name(), section["inner"].node->text, outer_field ? outer_field.node->text : outer_field.spec->fallback),
-                           "expected inner to be at most outer; both are half-angles");
+    section["inner"].error(
+        fmt::format("{}.inner is {}, wider than outer at {}", section.name(), section["inner"].node->text,
+                    outer_field ? outer_field.node->text : outer_field.spec->fallback),
+        "expected inner to be at most outer; both are half-angles");
 }
 
 void read_extent(const Section& section, LightSpec& light) {
@@ -102,7 +109,8 @@ void read_extent(const Section& section, LightSpec& light) {
 
 std::string light_name(const YamlNode& node, std::size_t index) {
     const YamlNode* id = node.find("id");
-    return id && id->is_scalar() && !id->text.empty() ? fmt::format("lights.{}", id->text) : fmt::format("lights.{}", index);
+    return id && id->is_scalar() && !id->text.empty() ? fmt::format("lights.{}", id->text)
+                                                      : fmt::format("lights.{}", index);
 }
 
 LightSpec read_light(const Section& shot, const YamlNode& node, std::size_t index) {
@@ -126,7 +134,9 @@ void check_ids(const Field& list, const std::vector<LightSpec>& lights) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
         if (seen.emplace(lights[i].id, i).second) continue;
         const YamlNode* id = list.node->items[i].find("id");
-        list.context->problems.error(id ? id->place : list.node->items[i].place, fmt::format("two lights have the id '{}'", lights[i].id), "give each light an id of its own");
+        list.context->problems.error(id ? id->place : list.node->items[i].place,
+                                     fmt::format("two lights have the id '{}'", lights[i].id),
+                                     "give each light an id of its own");
     }
 }
 
@@ -138,12 +148,14 @@ std::vector<LightSpec> read_lights(const Section& shot) {
     const Field list = shot["lights"];
     std::vector<LightSpec> lights;
     if (!list) return lights;
-    const bool maps = list.node->is_list() && std::all_of(list.node->items.begin(), list.node->items.end(), [](const YamlNode& item) { return item.is_map(); });
+    const bool maps = list.node->is_list() && std::all_of(list.node->items.begin(), list.node->items.end(),
+                                                          [](const YamlNode& item) { return item.is_map(); });
     if (!maps) {
         list.mismatch("for example lights: [ { id: key, type: point, intensity: 100 cd, position: [2, 3, 2] } ]");
         return lights;
     }
-    for (std::size_t i = 0; i < list.node->items.size(); ++i) lights.push_back(read_light(shot, list.node->items[i], i));
+    for (std::size_t i = 0; i < list.node->items.size(); ++i)
+        lights.push_back(read_light(shot, list.node->items[i], i));
     check_ids(list, lights);
     return lights;
 }

@@ -31,7 +31,7 @@ bool is_frame_placeholder(std::string_view inside) {
 }
 
 struct Pattern {
-    std::string text;       ///< {name} filled in
+    std::string text;  ///< {name} filled in
     bool has_frame = false;
 };
 
@@ -47,7 +47,8 @@ std::optional<Pattern> fill_pattern(const Field& field, const std::string& text,
         const std::string inside = close == std::string::npos ? "" : text.substr(i + 1, close - i - 1);
         const bool frame = frame_allowed && is_frame_placeholder(inside);
         if (inside != "name" && !frame) {
-            field.error(fmt::format("{} has '{}', which is no placeholder", field.name, text.substr(i, close == std::string::npos ? 1 : close - i + 1)),
+            field.error(fmt::format("{} has '{}', which is no placeholder", field.name,
+                                    text.substr(i, close == std::string::npos ? 1 : close - i + 1)),
                         frame_allowed ? "expected {name}, {frame} or {frame:04}" : "expected {name}");
             return std::nullopt;
         }
@@ -58,18 +59,25 @@ std::optional<Pattern> fill_pattern(const Field& field, const std::string& text,
     return pattern;
 }
 
-std::string absolute_path(const YamlNode& node, const std::string& path) { return (node.place.source->folder / path).lexically_normal().string(); }
+std::string absolute_path(const YamlNode& node, const std::string& path) {
+    return (node.place.source->folder / path).lexically_normal().string();
+}
 
 void read_pattern(const Field& field, bool one_frame, OutputSpec& output) {
     const auto text = read_text(field);
     const auto pattern = text ? fill_pattern(field, *text, true) : std::nullopt;
     if (!pattern) return;
-    if (!ends_in(pattern->text, kImageEndings)) return field.error(fmt::format("{} is '{}'", field.name, *text), "expected a pattern that ends in .exr, .png or .jpg");
+    if (!ends_in(pattern->text, kImageEndings))
+        return field.error(fmt::format("{} is '{}'", field.name, *text),
+                           "expected a pattern that ends in .exr, .png or .jpg");
     if (!pattern->has_frame && !one_frame) {
-        return field.error(fmt::format("{} is '{}', the same file for every frame", field.name, *text), "expected {frame} or {frame:04} in the pattern of a shot with several frames");
+        return field.error(fmt::format("{} is '{}', the same file for every frame", field.name, *text),
+                           "expected {frame} or {frame:04} in the pattern of a shot with several frames");
     }
     const std::string path = absolute_path(*field.node, pattern->text);
-    if (std::find(output.frames.begin(), output.frames.end(), path) != output.frames.end()) return field.error(fmt::format("{} is '{}', which is already an output", field.name, *text), "give each output a path of its own");
+    if (std::find(output.frames.begin(), output.frames.end(), path) != output.frames.end())
+        return field.error(fmt::format("{} is '{}', which is already an output", field.name, *text),
+                           "give each output a path of its own");
     output.frames.push_back(path);
     output.frames_where.push_back(location_of(field.node->place));
 }
@@ -78,7 +86,8 @@ void read_patterns(const Field& field, bool one_frame, OutputSpec& output) {
     if (!field) return;
     if (!field.node->is_list()) return read_pattern(field, one_frame, output);
     if (field.node->items.empty()) return field.mismatch();
-    for (std::size_t i = 0; i < field.node->items.size(); ++i) read_pattern(field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i)), one_frame, output);
+    for (std::size_t i = 0; i < field.node->items.size(); ++i)
+        read_pattern(field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i)), one_frame, output);
 }
 
 void read_aovs(const Field& field, OutputSpec& output) {
@@ -91,8 +100,10 @@ void read_aovs(const Field& field, OutputSpec& output) {
         const Field item = field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i));
         const auto aov = read_choice<Aov>(item);
         if (!aov) continue;
-        if (std::find(output.aovs.begin(), output.aovs.end(), *aov) != output.aovs.end()) item.error(fmt::format("{} is '{}' again", item.name, item.node->text), "expected each layer once");
-        else output.aovs.push_back(*aov);
+        if (std::find(output.aovs.begin(), output.aovs.end(), *aov) != output.aovs.end())
+            item.error(fmt::format("{} is '{}' again", item.name, item.node->text), "expected each layer once");
+        else
+            output.aovs.push_back(*aov);
     }
 }
 
@@ -102,11 +113,14 @@ void read_video_file(const Field& field, VideoSpec& video) {
     if (!filled) return;
     video.where = location_of(field.node->place);
     video.file = absolute_path(*field.node, filled->text);
-    if (!ends_in(video.file, kVideoEndings)) field.error(fmt::format("{} is '{}'", field.name, *text), "expected a file that ends in .mp4, .mkv, .mov, .webm or .gif");
+    if (!ends_in(video.file, kVideoEndings))
+        field.error(fmt::format("{} is '{}'", field.name, *text),
+                    "expected a file that ends in .mp4, .mkv, .mov, .webm or .gif");
 }
 
 VideoCodec codec_of(const VideoSpec& video) {
-    static const std::map<std::string, VideoCodec> by_ending{{".mov", VideoCodec::prores}, {".webm", VideoCodec::vp9}, {".gif", VideoCodec::gif}};
+    static const std::map<std::string, VideoCodec> by_ending{
+        {".mov", VideoCodec::prores}, {".webm", VideoCodec::vp9}, {".gif", VideoCodec::gif}};
     if (video.codec) return *video.codec;
     const auto found = by_ending.find(video.file.extension().string());
     return found == by_ending.end() ? VideoCodec::h264 : found->second;
@@ -117,8 +131,12 @@ void read_crf(const Field& field, VideoSpec& video) {
     if (!crf) return;
     const auto codec = static_cast<std::size_t>(codec_of(video));
     const std::string name = choices_of(*find_field("output.video.codec"))[codec].name;
-    if (kHighestCrf[codec] == 0) return field.error(fmt::format("{} does not apply to {}", field.name, name), "remove the key; crf belongs to h264, h265, av1 and vp9");
-    if (*crf > kHighestCrf[codec]) return field.error(fmt::format("{} is {}", field.name, *crf), fmt::format("expected 0 to {} for {}", kHighestCrf[codec], name));
+    if (kHighestCrf[codec] == 0)
+        return field.error(fmt::format("{} does not apply to {}", field.name, name),
+                           "remove the key; crf belongs to h264, h265, av1 and vp9");
+    if (*crf > kHighestCrf[codec])
+        return field.error(fmt::format("{} is {}", field.name, *crf),
+                           fmt::format("expected 0 to {} for {}", kHighestCrf[codec], name));
     video.crf = static_cast<int>(*crf);
 }
 
@@ -126,7 +144,9 @@ void read_pixel_format(const Field& field, VideoSpec& video) {
     const auto format = read_text(field);
     if (!format) return;
     const bool word = format->find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-    if (!word) return field.error(fmt::format("{} is '{}'", field.name, *format), "expected a name such as yuv420p or yuv422p10le");
+    if (!word)
+        return field.error(fmt::format("{} is '{}'", field.name, *format),
+                           "expected a name such as yuv420p or yuv422p10le");
     video.pixel_format = *format;
 }
 
@@ -144,14 +164,17 @@ std::optional<VideoSpec> read_video(const Section& section) {
 
 void read_png_bits(const Field& field, OutputSpec& output) {
     const auto bits = read_integer(field);
-    if (bits && *bits != 8 && *bits != 16) return field.error(fmt::format("{} is {}", field.name, *bits), "expected 8 or 16");
+    if (bits && *bits != 8 && *bits != 16)
+        return field.error(fmt::format("{} is {}", field.name, *bits), "expected 8 or 16");
     assign(output.png_bits, bits);
 }
 
 /// The default pattern's {name} without a document to point at; read_name refuses names that are no file names.
 std::string default_pattern(const std::string& name, const std::filesystem::path& working_folder) {
     std::string pattern = kDefaultPattern;
-    for (std::size_t at = pattern.find("{name}"); at != std::string::npos; at = pattern.find("{name}", at + name.size())) pattern.replace(at, 6, name);
+    for (std::size_t at = pattern.find("{name}"); at != std::string::npos;
+         at = pattern.find("{name}", at + name.size()))
+        pattern.replace(at, 6, name);
     return (working_folder / pattern).lexically_normal().string();
 }
 

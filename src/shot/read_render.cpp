@@ -28,7 +28,9 @@ void read_bounces(const Section& section, RenderSpec& render) {
     if (!field) return;
     const Section map = section.section("bounces");
     const auto total = map.present() ? read_integer(map["total"]) : read_integer(field);
-    if (total) render.bounces.total = render.bounces.diffuse = render.bounces.glossy = render.bounces.transmission = static_cast<int>(*total);
+    if (total)
+        render.bounces.total = render.bounces.diffuse = render.bounces.glossy = render.bounces.transmission =
+            static_cast<int>(*total);
     assign(render.bounces.diffuse, read_integer(map["diffuse"]));
     assign(render.bounces.glossy, read_integer(map["glossy"]));
     assign(render.bounces.transmission, read_integer(map["transmission"]));
@@ -66,9 +68,13 @@ std::optional<double> read_camera_exposure(const Section& exposure) {
         return ev100 ? std::optional(stops_of_ev100(*ev100)) : std::nullopt;
     }
     for (const char* key : {"iso", "time", "f_stop"}) {
-        if (!exposure.has(key)) exposure.context().problems.error(exposure.node()->place, fmt::format("{}.{} is missing", exposure.name(), key), "give { ev100 }, or { iso, time, f_stop }");
+        if (!exposure.has(key))
+            exposure.context().problems.error(exposure.node()->place,
+                                              fmt::format("{}.{} is missing", exposure.name(), key),
+                                              "give { ev100 }, or { iso, time, f_stop }");
     }
-    const auto iso = read_number(exposure["iso"]), time_s = read_number(exposure["time"]), f_stop = read_number(exposure["f_stop"]);
+    const auto iso = read_number(exposure["iso"]), time_s = read_number(exposure["time"]),
+               f_stop = read_number(exposure["f_stop"]);
     if (!iso || !time_s || !f_stop) return std::nullopt;
     return stops_of_ev100(std::log2(*f_stop * *f_stop / *time_s * 100 / *iso));
 }
@@ -76,9 +82,12 @@ std::optional<double> read_camera_exposure(const Section& exposure) {
 void read_exposure(const Section& section, ViewSpec& view) {
     const Field field = section["exposure"];
     const Section map = section.section("exposure");
-    if (map.present()) assign(view.exposure_stops, read_camera_exposure(map));
-    else if (is_word(field, "auto")) view.automatic = true;
-    else assign(view.exposure_stops, read_number(field));
+    if (map.present())
+        assign(view.exposure_stops, read_camera_exposure(map));
+    else if (is_word(field, "auto"))
+        view.automatic = true;
+    else
+        assign(view.exposure_stops, read_number(field));
 }
 
 }  // namespace

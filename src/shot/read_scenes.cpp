@@ -20,7 +20,8 @@ void read_clip(const Field& clip, SceneSpec& spec) {
     if (!clip) return;
     spec.clip_where = location_of(clip.node->place);
     if (clip.node->is_map() || clip.node->is_list()) {
-        clip.error(fmt::format("{}: several clips with weights are not supported yet", clip.name), "expected " + expectation(*clip.spec));
+        clip.error(fmt::format("{}: several clips with weights are not supported yet", clip.name),
+                   "expected " + expectation(*clip.spec));
     } else if (is_word(clip, "all")) {
         spec.clips = SceneSpec::Clips::all;
     } else if (is_word(clip, "none")) {
@@ -28,8 +29,10 @@ void read_clip(const Field& clip, SceneSpec& spec) {
     } else if (looks_like_number(*clip.node)) {
         spec.clips = SceneSpec::Clips::one;
         const auto index = read_integer(clip);
-        if (index && (*index < 0 || *index > 1000000)) clip.mismatch("an index counts from 0");
-        else assign(spec.clip_index, index);
+        if (index && (*index < 0 || *index > 1000000))
+            clip.mismatch("an index counts from 0");
+        else
+            assign(spec.clip_index, index);
     } else if (const auto name = read_text(clip)) {
         spec.clips = SceneSpec::Clips::one;
         spec.clip_name = *name;
@@ -54,13 +57,16 @@ void read_gltf(const Field& field, SceneSpec& spec) {
 /// Message name of a list entry: by its id when it has one, by its place otherwise; `--set` takes both.
 std::string entry_name(std::string_view list, const YamlNode& entry, std::size_t index) {
     const YamlNode* id = entry.find("id");
-    return id && id->is_scalar() && !id->text.empty() ? fmt::format("{}.{}", list, id->text) : fmt::format("{}.{}", list, index);
+    return id && id->is_scalar() && !id->text.empty() ? fmt::format("{}.{}", list, id->text)
+                                                      : fmt::format("{}.{}", list, index);
 }
 
 void read_id(const Field& field, SceneSpec& spec) {
     const auto id = read_text(field);
     if (!id) return;
-    if (id->find('/') != std::string::npos) field.error(fmt::format("{} is '{}'", field.name, *id), "expected a name without '/', which separates a scene from its nodes");
+    if (id->find('/') != std::string::npos)
+        field.error(fmt::format("{} is '{}'", field.name, *id),
+                    "expected a name without '/', which separates a scene from its nodes");
     spec.id = *id;
 }
 
@@ -73,7 +79,9 @@ SceneSpec read_scene(const Section& shot, const Field& list, const YamlNode& nod
         return spec;
     }
     if (!node.is_map()) {
-        list.with(node, fmt::format("scenes.{}", index)).error(fmt::format("scenes.{} is {}", index, shown_value(node)), "expected a map such as { id: helmet, gltf: assets/helmet.glb }");
+        list.with(node, fmt::format("scenes.{}", index))
+            .error(fmt::format("scenes.{} is {}", index, shown_value(node)),
+                   "expected a map such as { id: helmet, gltf: assets/helmet.glb }");
         return spec;
     }
     const Section section(shot.context(), &node, "scenes", entry_name("scenes", node, index));
@@ -94,7 +102,9 @@ void check_ids(const Field& list, const std::vector<SceneSpec>& scenes) {
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const auto [first, fresh] = seen.emplace(scenes[i].id, i);
         if (fresh || scenes[i].id.empty()) continue;
-        list.context->problems.error(id_place(list.node->items[i]), fmt::format("two scenes have the id '{}'", scenes[i].id), "give each scene an id of its own");
+        list.context->problems.error(id_place(list.node->items[i]),
+                                     fmt::format("two scenes have the id '{}'", scenes[i].id),
+                                     "give each scene an id of its own");
     }
 }
 
@@ -108,7 +118,8 @@ std::vector<SceneSpec> read_scenes(const Section& shot) {
         list.mismatch("for example scenes: [ { gltf: assets/helmet.glb } ]");
         return scenes;
     }
-    for (std::size_t i = 0; i < list.node->items.size(); ++i) scenes.push_back(read_scene(shot, list, list.node->items[i], i));
+    for (std::size_t i = 0; i < list.node->items.size(); ++i)
+        scenes.push_back(read_scene(shot, list, list.node->items[i], i));
     check_ids(list, scenes);
     return scenes;
 }

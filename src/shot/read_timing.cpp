@@ -24,7 +24,8 @@ std::optional<Rational> parse_rational(std::string_view text) {
     if (text.size() > 2 * kMostDigits + 1) return std::nullopt;
     if (const std::size_t slash = text.find('/'); slash != std::string_view::npos) {
         const auto above = parse_whole(text.substr(0, slash)), below = parse_whole(text.substr(slash + 1));
-        const bool fits = above && below && *above > 0 && *below > 0 && slash <= kMostDigits && text.size() - slash - 1 <= kMostDigits;
+        const bool fits = above && below && *above > 0 && *below > 0 && slash <= kMostDigits &&
+                          text.size() - slash - 1 <= kMostDigits;
         return fits ? std::optional(make_rational(*above, *below)) : std::nullopt;
     }
     const std::size_t dot = text.find('.');
@@ -32,7 +33,8 @@ std::optional<Rational> parse_rational(std::string_view text) {
     std::string digits(text.substr(0, dot));
     digits += decimals;
     const auto above = parse_whole(digits);
-    if (!above || *above <= 0 || decimals.size() > 6 || digits.size() > kMostDigits || decimals.starts_with('-')) return std::nullopt;
+    if (!above || *above <= 0 || decimals.size() > 6 || digits.size() > kMostDigits || decimals.starts_with('-'))
+        return std::nullopt;
     std::int64_t below = 1;
     for (std::size_t i = 0; i < decimals.size(); ++i) below *= 10;
     return make_rational(*above, below);
@@ -49,7 +51,8 @@ std::optional<Rational> read_rational(const Field& field) {
 
 bool is_frame_part(const YamlEntry& entry) {
     const std::string& text = entry.key.text;
-    return entry.value.kind == YamlNode::Kind::null && !entry.key.quoted && !text.empty() && text.find_first_not_of("0123456789-x ") == std::string::npos;
+    return entry.value.kind == YamlNode::Kind::null && !entry.key.quoted && !text.empty() &&
+           text.find_first_not_of("0123456789-x ") == std::string::npos;
 }
 
 /// `{ frames: 5,9,12-20 }`: YAML ends the value at the comma and takes the rest for keys without values. Takes those
@@ -64,8 +67,9 @@ YamlNode without_cut_frames(ReadContext& context, const YamlNode& timing) {
     }
     if (whole == frames->text) return rest;
     std::erase_if(rest.entries, is_frame_part);
-    context.problems.error(frames->place, fmt::format("timing.frames is cut short: YAML reads {} alone", frames->text),
-                           fmt::format("inside braces a comma begins the next key; quote the list: frames: \"{}\"", whole));
+    context.problems.error(
+        frames->place, fmt::format("timing.frames is cut short: YAML reads {} alone", frames->text),
+        fmt::format("inside braces a comma begins the next key; quote the list: frames: \"{}\"", whole));
     return rest;
 }
 
@@ -78,7 +82,9 @@ std::string frames_text(const YamlNode& node) {
 
 std::optional<std::vector<int>> read_frames(const Field& field) {
     if (!field) return std::nullopt;
-    const bool list_of_scalars = field.node->is_list() && !field.node->items.empty() && std::all_of(field.node->items.begin(), field.node->items.end(), [](const YamlNode& item) { return item.is_scalar(); });
+    const bool list_of_scalars = field.node->is_list() && !field.node->items.empty() &&
+                                 std::all_of(field.node->items.begin(), field.node->items.end(),
+                                             [](const YamlNode& item) { return item.is_scalar(); });
     if (!field.node->is_scalar() && !list_of_scalars) {
         field.mismatch();
         return std::nullopt;
@@ -89,7 +95,8 @@ std::optional<std::vector<int>> read_frames(const Field& field) {
         const Diagnostic& first = error.diagnostics().front();
         const std::string text = frames_text(*field.node), prefix = fmt::format("frames \"{}\": ", text);
         const std::string found = first.found.starts_with(prefix) ? first.found.substr(prefix.size()) : first.found;
-        field.error(fmt::format("{} is {}: {}", field.name, text, found), first.expected.empty() ? "expected " + expectation(*field.spec) : first.expected);
+        field.error(fmt::format("{} is {}: {}", field.name, text, found),
+                    first.expected.empty() ? "expected " + expectation(*field.spec) : first.expected);
         return std::nullopt;
     }
 }
@@ -111,12 +118,15 @@ Shutter read_shutter_interval(const Section& section) {
     const Field open = section["open"], close = section["close"];
     if (!open || !close) {
         const Field& given = open ? open : close;
-        given.error(fmt::format("{} stands alone", given.name), "give both open and close, in frames: shutter: { open: -0.25, close: 0.25 }");
+        given.error(fmt::format("{} stands alone", given.name),
+                    "give both open and close, in frames: shutter: { open: -0.25, close: 0.25 }");
         return {};
     }
     const auto open_frames = read_number(open), close_frames = read_number(close);
     if (!open_frames || !close_frames) return {};
-    if (*close_frames < *open_frames) close.error(fmt::format("shutter.close is {}, before shutter.open at {}", close.node->text, open.node->text), "expected a close that is not before open");
+    if (*close_frames < *open_frames)
+        close.error(fmt::format("shutter.close is {}, before shutter.open at {}", close.node->text, open.node->text),
+                    "expected a close that is not before open");
     return {*open_frames, *close_frames};
 }
 
@@ -152,9 +162,13 @@ ImageSpec read_image(const Section& shot) {
     for (std::size_t i = 0; i < sides.size(); ++i) {
         const YamlNode& item = size.node->items[i];
         const ParsedQuantity parsed = parse_quantity(item.text, Quantity::pixels);
-        const bool whole = item.is_scalar() && !item.quoted && parsed.problem == ParsedQuantity::Problem::none && parsed.value == static_cast<double>(static_cast<std::int64_t>(parsed.value)) && parsed.value >= size.spec->low && parsed.value <= size.spec->high;
-        if (whole) *sides[i] = static_cast<int>(parsed.value);
-        else size.with(item, fmt::format("image.size[{}]", i)).mismatch();
+        const bool whole = item.is_scalar() && !item.quoted && parsed.problem == ParsedQuantity::Problem::none &&
+                           parsed.value == static_cast<double>(static_cast<std::int64_t>(parsed.value)) &&
+                           parsed.value >= size.spec->low && parsed.value <= size.spec->high;
+        if (whole)
+            *sides[i] = static_cast<int>(parsed.value);
+        else
+            size.with(item, fmt::format("image.size[{}]", i)).mismatch();
     }
     return image;
 }

@@ -20,7 +20,9 @@ std::string with_unit(double value, const FieldSpec& field) {
     return unit.empty() ? format_number(value) : fmt::format("{} {}", format_number(value), unit);
 }
 
-std::string joined(const std::vector<std::string>& parts, std::string_view between) { return fmt::format("{}", fmt::join(parts, between)); }
+std::string joined(const std::vector<std::string>& parts, std::string_view between) {
+    return fmt::format("{}", fmt::join(parts, between));
+}
 
 std::string number_text(const FieldSpec& field) {
     const std::string range = range_text(field);
@@ -52,7 +54,10 @@ constexpr FormRow kFormRows[] = {
     {kSize2, [](const FieldSpec&) -> std::string { return "[width, height], whole numbers from 1 to 65536"; }},
     {kVector2, [](const FieldSpec& field) { return components_text("[width, height]", field); }},
     {kVector3, [](const FieldSpec& field) { return components_text("[x, y, z]", field); }},
-    {kRotation, [](const FieldSpec&) -> std::string { return "[x, y, z] in degrees, a quaternion [x, y, z, w] or { axis, angle }"; }},
+    {kRotation,
+     [](const FieldSpec&) -> std::string {
+         return "[x, y, z] in degrees, a quaternion [x, y, z, w] or { axis, angle }";
+     }},
     {kBoolean, [](const FieldSpec&) -> std::string { return "true or false"; }},
     {kRational, [](const FieldSpec&) -> std::string { return "frames a second, such as 24, 23.976 or 24000/1001"; }},
     {kFrames, [](const FieldSpec&) -> std::string { return "frames such as 0-95, 0-95x2 or \"5,9,12-20\""; }},
@@ -78,7 +83,8 @@ std::vector<const FieldSpec*> fields_below(std::string_view section) {
     std::vector<const FieldSpec*> fields;
     for (const FieldSpec& field : schema_table()) {
         const std::string_view path = field.path;
-        const bool grammar = path == "track" || path == "key" || path == "rotation";  // sections of values, not of a shot
+        const bool grammar =
+            path == "track" || path == "key" || path == "rotation";  // sections of values, not of a shot
         if (parent_of(path) == section && !(section.empty() && grammar)) fields.push_back(&field);
     }
     return fields;

@@ -13,23 +13,23 @@ namespace kadr {
 /// The forms a value may take; a field allows one or several.
 enum Form : unsigned {
     kText = 1u << 0,
-    kPath = 1u << 1,      ///< of a file, relative to the text that names it
+    kPath = 1u << 1,  ///< of a file, relative to the text that names it
     kBoolean = 1u << 2,
     kInteger = 1u << 3,
-    kNumber = 1u << 4,    ///< of the field's quantity
-    kVector2 = 1u << 5,   ///< [a, b] of the quantity
-    kVector3 = 1u << 6,   ///< [x, y, z] of the quantity
-    kRotation = 1u << 7,  ///< [x, y, z] in degrees, a quaternion, or { axis, angle }
-    kChoice = 1u << 8,    ///< one word of `choices`
-    kNode = 1u << 9,      ///< "scene", "scene/Node"
-    kSection = 1u << 10,  ///< a map, whose keys are the rows below this path
-    kSections = 1u << 11, ///< a list of such maps
-    kTexts = 1u << 12,    ///< a list of texts
-    kFrames = 1u << 13,   ///< 0-95, "5,9,12-20"
-    kRational = 1u << 14, ///< 24, 23.976, 24000/1001
-    kKeys = 1u << 15,     ///< a map of times to values
-    kSize2 = 1u << 16,    ///< [width, height], whole numbers
-    kTrack = 1u << 31,    ///< each of the forms may be keyed over time
+    kNumber = 1u << 4,     ///< of the field's quantity
+    kVector2 = 1u << 5,    ///< [a, b] of the quantity
+    kVector3 = 1u << 6,    ///< [x, y, z] of the quantity
+    kRotation = 1u << 7,   ///< [x, y, z] in degrees, a quaternion, or { axis, angle }
+    kChoice = 1u << 8,     ///< one word of `choices`
+    kNode = 1u << 9,       ///< "scene", "scene/Node"
+    kSection = 1u << 10,   ///< a map, whose keys are the rows below this path
+    kSections = 1u << 11,  ///< a list of such maps
+    kTexts = 1u << 12,     ///< a list of texts
+    kFrames = 1u << 13,    ///< 0-95, "5,9,12-20"
+    kRational = 1u << 14,  ///< 24, 23.976, 24000/1001
+    kKeys = 1u << 15,      ///< a map of times to values
+    kSize2 = 1u << 16,     ///< [width, height], whole numbers
+    kTrack = 1u << 31,     ///< each of the forms may be keyed over time
 };
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -38,17 +38,17 @@ inline constexpr double kAboveZero = std::numeric_limits<double>::denorm_min();
 
 /// One key of the format. The parser's checks, `kadr describe` and the JSON Schema all read this row.
 struct FieldSpec {
-    const char* path;              ///< "render.samples"; keys of list items stand under their list: "lights.color"
+    const char* path;  ///< "render.samples"; keys of list items stand under their list: "lights.color"
     unsigned forms = 0;
     Quantity quantity = Quantity::number;
     double low = -kInfinity, high = kInfinity;  ///< inclusive, in the natural unit; of every component
-    const char* choices = "";      ///< "a|b|!c" in the order of the enum; '!' marks what is not built yet
-    const char* fallback = "";     ///< default, as one would write it; empty: none
+    const char* choices = "";                   ///< "a|b|!c" in the order of the enum; '!' marks what is not built yet
+    const char* fallback = "";                  ///< default, as one would write it; empty: none
     const char* doc = "";
     const char* example = "";
-    const char* hint = "";         ///< what to do when the value is out of range
+    const char* hint = "";  ///< what to do when the value is out of range
     bool required = false;
-    bool built = true;             ///< false: known to the format, refused by name
+    bool built = true;  ///< false: known to the format, refused by name
 };
 
 /// Every key of the format, sections before their keys.

@@ -8,6 +8,8 @@ namespace {
 
 using enum Quantity;
 
+// One row a key reads best on one line.
+// clang-format off
 constexpr FieldSpec kTable[] = {
     {.path = "kadr", .forms = kInteger, .doc = "version of the shot format; this Kadr reads version 1", .example = "kadr: 1", .required = true},
     {.path = "kadr-reel", .doc = "a reel: a list of shots, cut and faded into one video", .built = false},
@@ -155,6 +157,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "rotation.axis", .forms = kVector3, .doc = "the axis, of any length but zero", .example = "axis: [0, 1, 0]", .required = true},
     {.path = "rotation.angle", .forms = kNumber | kTrack, .quantity = angle, .doc = "the angle", .example = "angle: 90 deg", .required = true},
 };
+// clang-format on
 
 }  // namespace
 

@@ -45,14 +45,18 @@ struct ReadContext {
 /// A value of the document, what the format says about it, and how messages call it.
 struct Field {
     ReadContext* context = nullptr;
-    const YamlNode* node = nullptr;   ///< null: absent
+    const YamlNode* node = nullptr;  ///< null: absent
     const FieldSpec* spec = nullptr;
-    std::string name;                 ///< "lights.key.intensity"
+    std::string name;  ///< "lights.key.intensity"
 
     explicit operator bool() const { return node != nullptr; }
     /// Another value that the same row describes: a component, a key's value.
-    Field with(const YamlNode& other, std::string other_name) const { return {context, &other, spec, std::move(other_name)}; }
-    void error(std::string found, std::string expected) const { context->problems.error(node->place, std::move(found), std::move(expected)); }
+    Field with(const YamlNode& other, std::string other_name) const {
+        return {context, &other, spec, std::move(other_name)};
+    }
+    void error(std::string found, std::string expected) const {
+        context->problems.error(node->place, std::move(found), std::move(expected));
+    }
     /// "<name> is <value>", "expected <what the row says>; <hint>"
     void mismatch(std::string_view advice = {}) const;
     /// The same with another expectation.
@@ -67,7 +71,8 @@ std::string shown_value(const YamlNode& node);
 class Section {
 public:
     /// @param node  null or a null node: the section is absent and every field of it too
-    /// @param schema_path  where its keys stand in the table ("lights"); @param name how messages call it ("lights.key")
+    /// @param schema_path  where its keys stand in the table ("lights"); @param name how messages call it
+    /// ("lights.key")
     Section(ReadContext& context, const YamlNode* node, std::string schema_path, std::string name);
     /// Section under a key of this one; absent when the value is not a map (which is reported unless the row has
     /// other forms).
@@ -84,8 +89,12 @@ public:
     YamlPlace key_place(std::string_view key) const;
 
 private:
-    std::string path_of(std::string_view key) const { return schema_path_.empty() ? std::string(key) : schema_path_ + "." + std::string(key); }
-    std::string name_of(std::string_view key) const { return name_.empty() ? std::string(key) : name_ + "." + std::string(key); }
+    std::string path_of(std::string_view key) const {
+        return schema_path_.empty() ? std::string(key) : schema_path_ + "." + std::string(key);
+    }
+    std::string name_of(std::string_view key) const {
+        return name_.empty() ? std::string(key) : name_ + "." + std::string(key);
+    }
     void check_keys() const;
     void check_key(const YamlEntry& entry) const;
     void unknown_key(const YamlEntry& entry) const;

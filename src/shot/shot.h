@@ -24,12 +24,12 @@ using Target = std::variant<Track<glm::dvec3>, NodeReference>;
 
 struct SceneSpec {
     std::string id;
-    std::filesystem::path gltf;       ///< absolute
-    SourceLocation where;             ///< of the path in the shot file
-    TransformTrack transform;         ///< world_from_scene
+    std::filesystem::path gltf;  ///< absolute
+    SourceLocation where;        ///< of the path in the shot file
+    TransformTrack transform;    ///< world_from_scene
     enum class Clips { all, none, one } clips = Clips::all;
-    std::string clip_name;            ///< Clips::one: a clip's name ...
-    int clip_index = -1;              ///< ... or its index; -1 when named
+    std::string clip_name;  ///< Clips::one: a clip's name ...
+    int clip_index = -1;    ///< ... or its index; -1 when named
     SourceLocation clip_where;
     double clip_start_s = 0;
     double clip_speed = 1;
@@ -42,13 +42,14 @@ struct CameraSpec {
     Track<glm::dvec3> position{glm::dvec3(0, 0, 5)};
     Target look_at = Track<glm::dvec3>(glm::dvec3(0));
     Track<glm::dvec3> up{glm::dvec3(0, 1, 0)};
-    std::optional<Track<double>> focal_length_mm;    ///< exclusive with vertical_fov
-    std::optional<Track<double>> vertical_fov_rad;   ///< neither given: 50 mm
+    std::optional<Track<double>> focal_length_mm;   ///< exclusive with vertical_fov
+    std::optional<Track<double>> vertical_fov_rad;  ///< neither given: 50 mm
     glm::dvec2 sensor_mm{36, 24};
     enum class Fit { automatic, horizontal, vertical } fit = Fit::automatic;  ///< automatic: the longer image side
-    std::optional<Track<double>> f_stop;             ///< pinhole when absent
-    std::optional<std::variant<Track<double>, NodeReference>> focus;  ///< metres along the view axis, or a node; default: the look_at target
-    int blades = 0;                                  ///< 0: round
+    std::optional<Track<double>> f_stop;                                      ///< pinhole when absent
+    std::optional<std::variant<Track<double>, NodeReference>>
+        focus;       ///< metres along the view axis, or a node; default: the look_at target
+    int blades = 0;  ///< 0: round
     bool operator==(const CameraSpec&) const = default;
 };
 
@@ -64,25 +65,25 @@ struct LightSpec {
     Track<double> strength{1.0};
     Track<glm::dvec3> color{glm::dvec3(1)};
     Track<glm::dvec3> position{glm::dvec3(0)};
-    std::optional<Target> look_at;                   ///< wins over direction
-    Track<glm::dvec3> direction{glm::dvec3(0, 0, -1)};  ///< the way the light travels
+    std::optional<Target> look_at;                                ///< wins over direction
+    Track<glm::dvec3> direction{glm::dvec3(0, 0, -1)};            ///< the way the light travels
     Track<double> inner_rad{0.0}, outer_rad{0.7853981633974483};  ///< half-angles
-    double range_m = 0;                              ///< 0: infinite
+    double range_m = 0;                                           ///< 0: infinite
     SpotFalloff falloff = SpotFalloff::gltf;
-    Track<double> radius_m{0.0};                     ///< point, spot: a sphere
-    double angular_diameter_rad = 0;                 ///< directional
-    Track<glm::dvec2> size_m{glm::dvec2(1)};         ///< area: rectangle
+    Track<double> radius_m{0.0};              ///< point, spot: a sphere
+    double angular_diameter_rad = 0;          ///< directional
+    Track<glm::dvec2> size_m{glm::dvec2(1)};  ///< area: rectangle
     bool operator==(const LightSpec&) const = default;
 };
 
 struct EnvironmentSpec {
-    std::optional<std::filesystem::path> image;      ///< absolute; latitude-longitude
+    std::optional<std::filesystem::path> image;  ///< absolute; latitude-longitude
     SourceLocation where;
-    Track<glm::dvec3> color{glm::dvec3(0)};          ///< radiance is color * strength (or image * strength)
+    Track<glm::dvec3> color{glm::dvec3(0)};  ///< radiance is color * strength (or image * strength)
     Track<double> strength{1.0};
-    Track<double> rotate_rad{0.0};                   ///< about +y
-    bool visible = true;                             ///< false: transparent background
-    bool given = false;                              ///< whether the shot says what it shines: color, image or strength (defaults depend on it)
+    Track<double> rotate_rad{0.0};  ///< about +y
+    bool visible = true;            ///< false: transparent background
+    bool given = false;  ///< whether the shot says what it shines: color, image or strength (defaults depend on it)
     bool operator==(const EnvironmentSpec&) const = default;
 };
 
@@ -93,9 +94,12 @@ struct RenderSpec {
     SourceLocation integrator_where;
     Integrator integrator = Integrator::path;
     int samples = 64;
-    struct Bounces { int total = 8, diffuse = 8, glossy = 8, transmission = 8; bool operator==(const Bounces&) const = default; } bounces;
+    struct Bounces {
+        int total = 8, diffuse = 8, glossy = 8, transmission = 8;
+        bool operator==(const Bounces&) const = default;
+    } bounces;
     FilterKind filter = FilterKind::blackman_harris;
-    double filter_width_px = 1.5;                    ///< full width of the support
+    double filter_width_px = 1.5;  ///< full width of the support
     double motion_tolerance_px = 0.1;
     std::optional<double> clamp_direct, clamp_indirect;
     std::uint32_t seed = 0;
@@ -107,26 +111,27 @@ struct RenderSpec {
 enum class ViewTransform { none, srgb, agx, aces, pbr_neutral };
 struct ViewSpec {
     ViewTransform transform = ViewTransform::srgb;
-    double exposure_stops = 0;      ///< every form of exposure, as a factor 2^stops
-    bool automatic = false;         ///< meters the log-average of the shot's first frame
+    double exposure_stops = 0;  ///< every form of exposure, as a factor 2^stops
+    bool automatic = false;     ///< meters the log-average of the shot's first frame
     bool operator==(const ViewSpec&) const = default;
 };
 
 enum class Aov { albedo, normal, depth, motion, samples, error };
 enum class VideoCodec { h264, h265, av1, vp9, prores, ffv1, gif };
 struct VideoSpec {
-    std::filesystem::path file;     ///< absolute
+    std::filesystem::path file;  ///< absolute
     SourceLocation where;
-    std::optional<VideoCodec> codec;         ///< none: by the file's extension (mp4, mkv: h264; mov: prores; webm: vp9; gif; avi refused)
+    std::optional<VideoCodec>
+        codec;  ///< none: by the file's extension (mp4, mkv: h264; mov: prores; webm: vp9; gif; avi refused)
     std::optional<int> crf;
-    std::optional<std::string> pixel_format; ///< none: the codec's default
+    std::optional<std::string> pixel_format;  ///< none: the codec's default
     bool operator==(const VideoSpec&) const = default;
 };
 struct OutputSpec {
     std::vector<std::string> frames;  ///< absolute patterns with {name} filled in and {frame:04} left; never empty
     std::vector<SourceLocation> frames_where;
     std::vector<Aov> aovs;
-    int png_bits = 8;                 ///< 8 or 16
+    int png_bits = 8;  ///< 8 or 16
     std::optional<VideoSpec> video;
     bool operator==(const OutputSpec&) const = default;
 };
@@ -142,7 +147,7 @@ struct Shot {
     std::filesystem::path file;
     std::string name;
     Timing timing;
-    bool frames_given = false;        ///< false: from 0 to the end of the longest clip (frame/ fills timing.frames in)
+    bool frames_given = false;  ///< false: from 0 to the end of the longest clip (frame/ fills timing.frames in)
     ImageSpec image;
     std::vector<SceneSpec> scenes;
     CameraSpec camera;

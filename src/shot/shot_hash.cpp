@@ -18,7 +18,7 @@ public:
 
 private:
     template <class Number>
-        requires std::is_integral_v<Number> || std::is_enum_v<Number>
+    requires std::is_integral_v<Number> || std::is_enum_v<Number>
     void add(Number value) { hasher_.add(static_cast<std::int64_t>(value)); }
     void add(double value) { hasher_.add(value); }
     void add(const std::string& text) { hasher_.add(text); }
@@ -46,18 +46,24 @@ private:
     void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
-    void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed); }
+    void add(const SceneSpec& s) {
+        (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed);
+    }
     void add(const CameraSpec& c) {
-        (*this)(c.gltf, c.position, c.look_at, c.up, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit, c.f_stop, c.focus, c.blades);
+        (*this)(c.gltf, c.position, c.look_at, c.up, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,
+                c.f_stop, c.focus, c.blades);
     }
     void add(const LightSpec& l) {
-        (*this)(l.kind, l.strength, l.color, l.position, l.look_at, l.direction, l.inner_rad, l.outer_rad, l.range_m, l.falloff, l.radius_m,
-                l.angular_diameter_rad, l.size_m);
+        (*this)(l.kind, l.strength, l.color, l.position, l.look_at, l.direction, l.inner_rad, l.outer_rad, l.range_m,
+                l.falloff, l.radius_m, l.angular_diameter_rad, l.size_m);
     }
-    void add(const EnvironmentSpec& e) { (*this)(e.image.has_value(), e.color, e.strength, e.rotate_rad, e.visible, e.given); }
+    void add(const EnvironmentSpec& e) {
+        (*this)(e.image.has_value(), e.color, e.strength, e.rotate_rad, e.visible, e.given);
+    }
     void add(const RenderSpec& r) {
-        (*this)(r.integrator, r.samples, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission, r.filter, r.filter_width_px,
-                r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed, r.seed_animated, r.cull_backfaces);
+        (*this)(r.integrator, r.samples, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission,
+                r.filter, r.filter_width_px, r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed,
+                r.seed_animated, r.cull_backfaces);
     }
     template <class T>
     void add(const std::vector<T>& list) {
@@ -73,7 +79,8 @@ private:
 void hash_shot(const Shot& shot, Hasher& hasher) {
     Feed feed(hasher);
     feed(shot.timing.fps, shot.timing.first, shot.image.width, shot.image.height, shot.image.pixel_aspect);
-    feed(shot.scenes, shot.camera, shot.shutter.open_frames, shot.shutter.close_frames, shot.lights, shot.environment, shot.use_scene_lights);
+    feed(shot.scenes, shot.camera, shot.shutter.open_frames, shot.shutter.close_frames, shot.lights, shot.environment,
+         shot.use_scene_lights);
     feed(shot.render, shot.output.aovs);
 }
 

@@ -13,11 +13,11 @@ namespace kadr {
 /// What the command line lays over the file. The command line wins; its paths are relative to the working folder.
 struct ShotOverrides {
     std::vector<std::pair<std::string, std::string>> set;  ///< "render.samples" -> "16", values in YAML
-    std::string frames;        ///< "1-24x2,40"; empty: the file's
-    std::string output;        ///< frame pattern
-    std::string video;         ///< file, or "none"
-    int samples = 0;           ///< 0: the file's
-    int width = 0, height = 0; ///< 0: the file's
+    std::string frames;                                    ///< "1-24x2,40"; empty: the file's
+    std::string output;                                    ///< frame pattern
+    std::string video;                                     ///< file, or "none"
+    int samples = 0;                                       ///< 0: the file's
+    int width = 0, height = 0;                             ///< 0: the file's
 };
 
 /// Reads and validates a shot file: every problem at once.

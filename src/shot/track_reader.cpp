@@ -40,7 +40,8 @@ std::optional<Ease> read_ease(const Field& field) {
         ease[i] = number.value;
     }
     if (fits) return ease;
-    field.error(fmt::format("{} is {}", field.name, shown_value(*field.node)), "expected four numbers [x1, y1, x2, y2] with x1 and x2 from 0 to 1");
+    field.error(fmt::format("{} is {}", field.name, shown_value(*field.node)),
+                "expected four numbers [x1, y1, x2, y2] with x1 and x2 from 0 to 1");
     return std::nullopt;
 }
 
@@ -51,7 +52,8 @@ std::optional<double> read_time(const Field& field) {
     if (parsed.problem == ParsedQuantity::Problem::none && std::abs(parsed.value) <= 1e9) {
         return parsed.in_frames ? seconds_of_frames(parsed.value - timing.first, timing.fps) : parsed.value;
     }
-    field.error(fmt::format("the time of a key of {} is {}", field.name, shown_value(*field.node)), "expected a time such as 2.5 s, 80 ms, 12 f or a number of seconds");
+    field.error(fmt::format("the time of a key of {} is {}", field.name, shown_value(*field.node)),
+                "expected a time such as 2.5 s, 80 ms, 12 f or a number of seconds");
     return std::nullopt;
 }
 
@@ -61,7 +63,8 @@ std::optional<ReadKey<T>> read_key(const Field& field, const YamlEntry& entry, R
     ReadKey<T> result{{}, &entry};
     Field value = field.with(entry.value, field.name);
     if (entry.value.is_map()) {
-        const Section section(*field.context, &entry.value, "key", fmt::format("{}.keys.{}", field.name, entry.key.text));
+        const Section section(*field.context, &entry.value, "key",
+                              fmt::format("{}.keys.{}", field.name, entry.key.text));
         result.key.ease = read_ease(section["ease"]);
         value.node = section["value"].node;
         if (!value) return std::nullopt;  // reported as missing
@@ -77,8 +80,12 @@ template <class T>
 void check_distinct(const Field& field, const std::vector<ReadKey<T>>& keys) {
     for (std::size_t i = 1; i < keys.size(); ++i) {
         const YamlNode &before = keys[i - 1].entry->key, &here = keys[i].entry->key;
-        if (keys[i].key.time_s != keys[i - 1].key.time_s || before.text == here.text) continue;  // same text: a duplicate key, reported as such
-        field.context->problems.error(here.place, fmt::format("two keys of {} are at the same time, {} and {}", field.name, before.text, here.text), "expected one key a time");
+        if (keys[i].key.time_s != keys[i - 1].key.time_s || before.text == here.text)
+            continue;  // same text: a duplicate key, reported as such
+        field.context->problems.error(
+            here.place,
+            fmt::format("two keys of {} are at the same time, {} and {}", field.name, before.text, here.text),
+            "expected one key a time");
     }
 }
 
@@ -94,7 +101,8 @@ std::optional<std::vector<ReadKey<T>>> read_keys(const Field& field, const Field
     for (const YamlEntry& entry : keys.node->entries) {
         if (auto key = read_key(field, entry, read_value)) result.push_back(std::move(*key));
     }
-    std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.key.time_s < b.key.time_s; });
+    std::stable_sort(result.begin(), result.end(),
+                     [](const auto& a, const auto& b) { return a.key.time_s < b.key.time_s; });
     check_distinct(field, result);
     return result.size() == keys.node->entries.size() ? std::optional(std::move(result)) : std::nullopt;
 }
@@ -155,7 +163,8 @@ std::optional<glm::dvec3> read_scale(const Field& field) {
         scale = read_vector3(field);
     }
     if (!scale || (scale->x != 0 && scale->y != 0 && scale->z != 0)) return scale;
-    field.error(fmt::format("{} is zero", field.name), "expected a scale that is not zero; a tiny one such as 1e-6 makes things vanish");
+    field.error(fmt::format("{} is zero", field.name),
+                "expected a scale that is not zero; a tiny one such as 1e-6 makes things vanish");
     return std::nullopt;
 }
 
@@ -164,7 +173,9 @@ std::optional<glm::dquat> read_quaternion(const Field& field) {
     for (std::size_t i = 0; i < xyzw.size(); ++i) {
         const ParsedQuantity number = parse_quantity(field.node->items[i].text, Quantity::number);
         if (number.problem != ParsedQuantity::Problem::none) {
-            field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i)).error(fmt::format("{}[{}] is {}", field.name, i, shown_value(field.node->items[i])), "expected a number: four of them are a quaternion [x, y, z, w]");
+            field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i))
+                .error(fmt::format("{}[{}] is {}", field.name, i, shown_value(field.node->items[i])),
+                       "expected a number: four of them are a quaternion [x, y, z, w]");
             return std::nullopt;
         }
         xyzw[i] = number.value;
@@ -172,7 +183,8 @@ std::optional<glm::dquat> read_quaternion(const Field& field) {
     const glm::dquat quaternion(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
     const double length = glm::length(quaternion);
     if (std::isfinite(length) && length > 0) return quaternion / length;
-    field.error(fmt::format("{} is a quaternion of length {}", field.name, format_number(length)), "expected [x, y, z, w] that are not all zero");
+    field.error(fmt::format("{} is a quaternion of length {}", field.name, format_number(length)),
+                "expected [x, y, z, w] that are not all zero");
     return std::nullopt;
 }
 
@@ -190,8 +202,11 @@ void check_turns(const Field& field, const KeyedTrack<glm::dquat>& keyed) {
     if (keyed.track.interpolation == Interpolation::step) return;
     for (std::size_t i = 1; i < keyed.entries.size(); ++i) {
         if (std::abs(glm::dot(keyed.track.keys[i - 1].value, keyed.track.keys[i].value)) > kHalfTurn) continue;
-        field.context->problems.error(keyed.entries[i]->key.place, fmt::format("keys {} and {} of {} are 180 deg apart", keyed.entries[i - 1]->key.text, keyed.entries[i]->key.text, field.name),
-                                      "the way round is undefined; add a key between them, or write { axis: [x, y, z], angle: { keys: ... } }");
+        field.context->problems.error(
+            keyed.entries[i]->key.place,
+            fmt::format("keys {} and {} of {} are 180 deg apart", keyed.entries[i - 1]->key.text,
+                        keyed.entries[i]->key.text, field.name),
+            "the way round is undefined; add a key between them, or write { axis: [x, y, z], angle: { keys: ... } }");
     }
 }
 
@@ -205,7 +220,8 @@ std::optional<glm::dvec3> written_angles_rad(const YamlEntry& entry) {
     const YamlNode& node = value_node(entry);
     if (node.items.size() != 3) return std::nullopt;
     glm::dvec3 angles(0);
-    for (std::size_t i = 0; i < 3; ++i) angles[static_cast<int>(i)] = parse_quantity(node.items[i].text, Quantity::angle).value;
+    for (std::size_t i = 0; i < 3; ++i)
+        angles[static_cast<int>(i)] = parse_quantity(node.items[i].text, Quantity::angle).value;
     return angles;
 }
 
@@ -216,8 +232,9 @@ void warn_of_long_turns(const Field& field, const KeyedTrack<glm::dquat>& keyed)
         if (!before || !here) continue;
         const glm::dvec3 turn = glm::abs(*here - *before);
         if (std::max({turn.x, turn.y, turn.z}) <= glm::radians(180.0)) continue;
-        field.context->problems.warning(keyed.entries[i]->key.place, fmt::format("{} turns more than 180 deg between two keys", field.name),
-                                        "the shorter way round is taken; write { axis: [x, y, z], angle: { keys: ... } } to turn on");
+        field.context->problems.warning(
+            keyed.entries[i]->key.place, fmt::format("{} turns more than 180 deg between two keys", field.name),
+            "the shorter way round is taken; write { axis: [x, y, z], angle: { keys: ... } } to turn on");
     }
 }
 
@@ -234,10 +251,18 @@ std::optional<RotationTrack> read_axis_angle(const Field& field) {
 }  // namespace
 
 std::optional<Track<double>> read_number_track(const Field& field) { return read_track<double>(field, read_number); }
-std::optional<Track<glm::dvec2>> read_vector2_track(const Field& field) { return read_track<glm::dvec2>(field, read_vector2); }
-std::optional<Track<glm::dvec3>> read_vector3_track(const Field& field) { return read_track<glm::dvec3>(field, read_vector3); }
-std::optional<Track<glm::dvec3>> read_direction_track(const Field& field) { return read_track<glm::dvec3>(field, read_direction); }
-std::optional<Track<glm::dvec3>> read_scale_track(const Field& field) { return read_track<glm::dvec3>(field, read_scale); }
+std::optional<Track<glm::dvec2>> read_vector2_track(const Field& field) {
+    return read_track<glm::dvec2>(field, read_vector2);
+}
+std::optional<Track<glm::dvec3>> read_vector3_track(const Field& field) {
+    return read_track<glm::dvec3>(field, read_vector3);
+}
+std::optional<Track<glm::dvec3>> read_direction_track(const Field& field) {
+    return read_track<glm::dvec3>(field, read_direction);
+}
+std::optional<Track<glm::dvec3>> read_scale_track(const Field& field) {
+    return read_track<glm::dvec3>(field, read_scale);
+}
 
 std::optional<RotationTrack> read_rotation_track(const Field& field) {
     if (!field) return std::nullopt;
@@ -260,7 +285,8 @@ std::optional<RotationTrack> read_rotation_track(const Field& field) {
 std::optional<NodeReference> read_node(const Field& field) {
     if (!field) return std::nullopt;
     const std::string& text = field.node->text;
-    const bool well_formed = field.node->is_scalar() && !text.empty() && text.front() != '/' && text.back() != '/' && text.find("//") == std::string::npos && !looks_like_number(*field.node);
+    const bool well_formed = field.node->is_scalar() && !text.empty() && text.front() != '/' && text.back() != '/' &&
+                             text.find("//") == std::string::npos && !looks_like_number(*field.node);
     if (well_formed) return NodeReference{text, location_of(field.node->place)};
     field.mismatch();
     return std::nullopt;

@@ -26,7 +26,8 @@ bool is_not_finite(std::string_view text) {
     if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
     if (!text.empty() && text.front() == '.') text.remove_prefix(1);
     std::string lower(text.substr(0, 9));
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     return lower == "inf" || lower == "nan" || lower == "infinity";
 }
 
@@ -47,16 +48,28 @@ ParsedQuantity problem(ParsedQuantity::Problem kind) {
 
 const std::vector<UnitSpec>& unit_table() {
     static const std::vector<UnitSpec> table{
-        {"deg", Quantity::angle, std::numbers::pi, 180}, {"rad", Quantity::angle, 1, 1},
-        {"s", Quantity::time, 1, 1},      {"ms", Quantity::time, 1, 1000},  {"f", Quantity::time, 1, 1},
-        {"m", Quantity::length, 1, 1},    {"cm", Quantity::length, 1, 100}, {"mm", Quantity::length, 1, 1000},
+        {"deg", Quantity::angle, std::numbers::pi, 180},
+        {"rad", Quantity::angle, 1, 1},
+        {"s", Quantity::time, 1, 1},
+        {"ms", Quantity::time, 1, 1000},
+        {"f", Quantity::time, 1, 1},
+        {"m", Quantity::length, 1, 1},
+        {"cm", Quantity::length, 1, 100},
+        {"mm", Quantity::length, 1, 1000},
         {"km", Quantity::length, 1000, 1},
-        {"mm", Quantity::lens, 1, 1},     {"cm", Quantity::lens, 10, 1},    {"m", Quantity::lens, 1000, 1},
-        {"px", Quantity::pixels, 1, 1},   {"f", Quantity::frames, 1, 1},
-        {"lux", Quantity::illuminance, 1, 1}, {"lx", Quantity::illuminance, 1, 1},
+        {"mm", Quantity::lens, 1, 1},
+        {"cm", Quantity::lens, 10, 1},
+        {"m", Quantity::lens, 1000, 1},
+        {"px", Quantity::pixels, 1, 1},
+        {"f", Quantity::frames, 1, 1},
+        {"lux", Quantity::illuminance, 1, 1},
+        {"lx", Quantity::illuminance, 1, 1},
         {"cd", Quantity::intensity, 1, 1},
-        {"nt", Quantity::luminance, 1, 1}, {"cd/m2", Quantity::luminance, 1, 1},
-        {"lm", Quantity::power, 1, 1},    {"stops", Quantity::stops, 1, 1}, {"ev", Quantity::stops, 1, 1},
+        {"nt", Quantity::luminance, 1, 1},
+        {"cd/m2", Quantity::luminance, 1, 1},
+        {"lm", Quantity::power, 1, 1},
+        {"stops", Quantity::stops, 1, 1},
+        {"ev", Quantity::stops, 1, 1},
     };
     return table;
 }
@@ -99,7 +112,10 @@ ParsedQuantity parse_quantity(std::string_view text, Quantity quantity) {
     const UnitSpec* unit = find_unit(name.empty() ? natural_unit(quantity) : name, quantity);
     if (!name.empty() && !unit) {
         const bool starts_with_letter = name.front() >= 'A';
-        const bool is_word = starts_with_letter && std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '/' || c == '2' || c == '%'; });
+        const bool is_word =
+            starts_with_letter && std::all_of(name.begin(), name.end(), [](char c) {
+                return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '/' || c == '2' || c == '%';
+            });
         result.problem = is_word ? Problem::wrong_unit : Problem::not_a_number;
         return result;
     }

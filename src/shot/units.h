@@ -10,7 +10,20 @@ namespace kadr {
 
 /// What a number of the shot file measures. Inside, everything is SI: but lens (millimetres, as lenses are sold),
 /// pixels and frames.
-enum class Quantity { number, angle, time, length, lens, pixels, frames, illuminance, intensity, luminance, power, stops };
+enum class Quantity {
+    number,
+    angle,
+    time,
+    length,
+    lens,
+    pixels,
+    frames,
+    illuminance,
+    intensity,
+    luminance,
+    power,
+    stops
+};
 
 /// A unit that may follow a number: value_inside = number * multiplier / divisor. The first of a quantity's units is
 /// its natural one, which a bare number has.
@@ -33,8 +46,8 @@ double from_natural(Quantity quantity, double value);
 /// What became of the text of a number.
 struct ParsedQuantity {
     enum class Problem { none, not_a_number, not_finite, out_of_range, wrong_unit } problem = Problem::none;
-    double value = 0;    ///< inside unit
-    std::string unit;    ///< as written; the offending one for wrong_unit
+    double value = 0;        ///< inside unit
+    std::string unit;        ///< as written; the offending one for wrong_unit
     bool in_frames = false;  ///< a time written in frames: `value` is the number of frames
 };
 

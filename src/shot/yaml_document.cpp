@@ -47,7 +47,8 @@ int value_length(std::string_view line, std::size_t column) {
 }
 
 int character_count(std::string_view bytes) {
-    return static_cast<int>(std::count_if(bytes.begin(), bytes.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+    return static_cast<int>(std::count_if(bytes.begin(), bytes.end(),
+                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 /// Finds where flow brackets nest too deeply. yaml-cpp reads a whole line of brackets ahead before its own guard
@@ -59,17 +60,23 @@ public:
     std::optional<std::size_t> too_deep() {
         for (; at_ < text_.size(); ++at_) {
             const char c = text_[at_];
-            if (c == '#' && space_before()) skip_to('\n');
-            else if ((c == '"' || c == '\'') && starts_value()) skip_to(c);
-            else if (c == '[' || c == '{') ++depth_;
-            else if ((c == ']' || c == '}') && depth_ > 0) --depth_;
+            if (c == '#' && space_before())
+                skip_to('\n');
+            else if ((c == '"' || c == '\'') && starts_value())
+                skip_to(c);
+            else if (c == '[' || c == '{')
+                ++depth_;
+            else if ((c == ']' || c == '}') && depth_ > 0)
+                --depth_;
             if (depth_ > kDeepestYaml) return at_;
         }
         return std::nullopt;
     }
 
 private:
-    bool space_before() const { return at_ == 0 || text_[at_ - 1] == ' ' || text_[at_ - 1] == '\t' || text_[at_ - 1] == '\n'; }
+    bool space_before() const {
+        return at_ == 0 || text_[at_ - 1] == ' ' || text_[at_ - 1] == '\t' || text_[at_ - 1] == '\n';
+    }
     bool starts_value() const {
         std::size_t i = at_;
         while (i > 0 && text_[i - 1] == ' ') --i;
@@ -100,15 +107,21 @@ public:
 
     void OnDocumentStart(const YAML::Mark& mark) override { document_place_ = place(mark); }
     void OnDocumentEnd() override {}
-    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { finish(make(YamlNode::Kind::null, mark), anchor); }
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        finish(make(YamlNode::Kind::null, mark), anchor);
+    }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         const auto found = anchors_.find(anchor);
-        if (found == anchors_.end()) fail(place(mark), "an alias stands inside the value it names", "expected an alias of a complete value");
+        if (found == anchors_.end())
+            fail(place(mark), "an alias stands inside the value it names", "expected an alias of a complete value");
         alias_nodes_ += node_count(found->second);
-        if (alias_nodes_ > kMostAliasNodes) fail(place(mark), "the aliases expand to a huge document", fmt::format("expected aliases that stand for at most {} values", kMostAliasNodes));
+        if (alias_nodes_ > kMostAliasNodes)
+            fail(place(mark), "the aliases expand to a huge document",
+                 fmt::format("expected aliases that stand for at most {} values", kMostAliasNodes));
         finish(YamlNode(found->second), 0);
     }
-    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& value) override {
         check_tag(mark, tag);
         YamlNode node = make(YamlNode::Kind::scalar, mark);
         node.quoted = tag == "!";
@@ -116,9 +129,15 @@ public:
         if (!node.quoted) node.place.length = static_cast<int>(value.size());
         finish(std::move(node), anchor);
     }
-    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override { open(YamlNode::Kind::list, mark, tag, anchor); }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value) override {
+        open(YamlNode::Kind::list, mark, tag, anchor);
+    }
     void OnSequenceEnd() override { close(); }
-    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override { open(YamlNode::Kind::map, mark, tag, anchor); }
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value) override {
+        open(YamlNode::Kind::map, mark, tag, anchor);
+    }
     void OnMapEnd() override { close(); }
 
 private:
@@ -130,18 +149,22 @@ private:
 
     YamlPlace place(const YAML::Mark& mark) const { return {&source_, mark.line, mark.column, 0}; }
     YamlNode make(YamlNode::Kind kind, const YAML::Mark& mark) {
-        if (++nodes_ > kMostYamlNodes) fail(place(mark), fmt::format("there are more than {} values", kMostYamlNodes), "expected a smaller file");
+        if (++nodes_ > kMostYamlNodes)
+            fail(place(mark), fmt::format("there are more than {} values", kMostYamlNodes), "expected a smaller file");
         YamlNode node;
         node.kind = kind;
         node.place = place(mark);
         return node;
     }
     void check_tag(const YAML::Mark& mark, const std::string& tag) const {
-        if (!tag.empty() && tag != "?" && tag != "!") fail(place(mark), fmt::format("the tag '{}' is not part of the format", tag), "expected a value without a tag");
+        if (!tag.empty() && tag != "?" && tag != "!")
+            fail(place(mark), fmt::format("the tag '{}' is not part of the format", tag),
+                 "expected a value without a tag");
     }
     void open(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
         check_tag(mark, tag);
-        if (open_.size() >= static_cast<std::size_t>(kDeepestYaml)) fail(place(mark), "the values nest too deeply", fmt::format("expected at most {} levels", kDeepestYaml));
+        if (open_.size() >= static_cast<std::size_t>(kDeepestYaml))
+            fail(place(mark), "the values nest too deeply", fmt::format("expected at most {} levels", kDeepestYaml));
         open_.push_back({make(kind, mark), anchor, std::nullopt});
     }
     void close() {
@@ -159,18 +182,22 @@ private:
         if (parent.node.kind == YamlNode::Kind::list) {
             parent.node.items.push_back(std::move(node));
         } else if (!parent.key) {
-            if (node.kind == YamlNode::Kind::null) node.text = "null";
-            else if (!node.is_scalar()) fail(node.place, "a key is not a plain word", "expected `key: value`");
+            if (node.kind == YamlNode::Kind::null)
+                node.text = "null";
+            else if (!node.is_scalar())
+                fail(node.place, "a key is not a plain word", "expected `key: value`");
             parent.key = std::move(node);
         } else {
-            if (node.kind == YamlNode::Kind::null) node.place = parent.key->place;  // what is missing has no place of its own
+            if (node.kind == YamlNode::Kind::null)
+                node.place = parent.key->place;  // what is missing has no place of its own
             parent.node.entries.push_back({std::move(*parent.key), std::move(node)});
             parent.key.reset();
         }
     }
     void remember(YAML::anchor_t anchor, const YamlNode& node) {
         nodes_ += node_count(node);
-        if (nodes_ > kMostYamlNodes) fail(node.place, fmt::format("there are more than {} values", kMostYamlNodes), "expected a smaller file");
+        if (nodes_ > kMostYamlNodes)
+            fail(node.place, fmt::format("there are more than {} values", kMostYamlNodes), "expected a smaller file");
         anchors_[anchor] = node;
     }
 
@@ -184,7 +211,8 @@ private:
 
 void check_text(const YamlSource& source) {
     if (source.text.size() > kMostYamlBytes) {
-        fail({&source, -1, 0, 0}, fmt::format("the file has {} bytes", source.text.size()), fmt::format("expected a shot file of at most {} MiB", kMostYamlBytes >> 20));
+        fail({&source, -1, 0, 0}, fmt::format("the file has {} bytes", source.text.size()),
+             fmt::format("expected a shot file of at most {} MiB", kMostYamlBytes >> 20));
     }
     if (const auto bad = first_invalid_utf8(source.text)) {
         // The line itself cannot be shown: its bytes are not text.
@@ -195,15 +223,18 @@ void check_text(const YamlSource& source) {
         diagnostic.expected = "expected UTF-8 text; save the file in that encoding";
         throw InputError(std::move(diagnostic));
     }
-    if (const std::size_t zero = source.text.find('\0'); zero != std::string::npos) fail(place_of_offset(source, zero), "there is a zero byte", "expected text");
+    if (const std::size_t zero = source.text.find('\0'); zero != std::string::npos)
+        fail(place_of_offset(source, zero), "there is a zero byte", "expected text");
     if (const auto deep = BracketScan(source.text).too_deep()) {
-        fail(place_of_offset(source, *deep), "the values nest too deeply", fmt::format("expected at most {} levels", kDeepestYaml));
+        fail(place_of_offset(source, *deep), "the values nest too deeply",
+             fmt::format("expected at most {} levels", kDeepestYaml));
     }
 }
 
 }  // namespace
 
-YamlSource::YamlSource(std::string_view content, std::string source_name, std::filesystem::path source_folder, bool is_argument)
+YamlSource::YamlSource(std::string_view content, std::string source_name, std::filesystem::path source_folder,
+                       bool is_argument)
     : name(std::move(source_name)), folder(std::move(source_folder)), argument(is_argument) {
     if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
     text = content;
@@ -228,7 +259,8 @@ const YamlNode* YamlNode::find(std::string_view key) const {
     return nullptr;
 }
 
-const YamlSource& YamlDocument::add_source(std::string_view text, std::string name, std::filesystem::path folder, bool argument) {
+const YamlSource& YamlDocument::add_source(std::string_view text, std::string name, std::filesystem::path folder,
+                                           bool argument) {
     sources.push_back(std::make_unique<YamlSource>(text, std::move(name), std::move(folder), argument));
     return *sources.back();
 }
@@ -241,9 +273,12 @@ YamlNode parse_yaml(const YamlSource& source) {
         YAML::Parser parser(stream);
         parser.HandleNextDocument(builder);
         TreeBuilder second(source);
-        if (parser.HandleNextDocument(second)) fail(second.document_place(), "a second document starts here", "expected one shot a file; remove '---' and what follows");
+        if (parser.HandleNextDocument(second))
+            fail(second.document_place(), "a second document starts here",
+                 "expected one shot a file; remove '---' and what follows");
     } catch (const YAML::Exception& error) {
-        fail({&source, error.mark.line, error.mark.column, 1}, fmt::format("this is not valid YAML: {}", error.msg), "expected `key: value` lines; check brackets, quotes and indentation (spaces, no tabs)");
+        fail({&source, error.mark.line, error.mark.column, 1}, fmt::format("this is not valid YAML: {}", error.msg),
+             "expected `key: value` lines; check brackets, quotes and indentation (spaces, no tabs)");
     }
     return builder.take_root();
 }

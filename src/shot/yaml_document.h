@@ -19,7 +19,8 @@ struct YamlSource {
     std::string text;
     std::vector<std::size_t> line_starts;  ///< byte offsets into text
 
-    YamlSource(std::string_view content, std::string source_name, std::filesystem::path source_folder, bool is_argument);
+    YamlSource(std::string_view content, std::string source_name, std::filesystem::path source_folder,
+               bool is_argument);
     /// Line without its end; empty beyond the last. @param index from 0
     std::string_view line(int index) const;
 };

@@ -18,7 +18,8 @@ Hash hash_of(const Values&... values) {
 }
 
 TEST(Hasher, SeparatesValues) {
-    EXPECT_NE(hash_of(std::string_view("ab"), std::string_view("c")), hash_of(std::string_view("a"), std::string_view("bc")));
+    EXPECT_NE(hash_of(std::string_view("ab"), std::string_view("c")),
+              hash_of(std::string_view("a"), std::string_view("bc")));
     EXPECT_NE(hash_of(std::string_view("")), hash_of());
     EXPECT_EQ(hash_of(0.0), hash_of(-0.0));
     EXPECT_NE(hash_of(0.0), hash_of(5e-324));
@@ -30,7 +31,8 @@ TEST(Hasher, PrintsThirtyTwoHexDigits) {
 }
 
 TEST(HashFile, HashesTheContent) {
-    const auto folder = std::filesystem::temp_directory_path() / ("kadr-hash-test-" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
+    const auto folder = std::filesystem::temp_directory_path() /
+                        ("kadr-hash-test-" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "empty");
     std::ofstream(folder / "a") << "a";

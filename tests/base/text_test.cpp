@@ -35,7 +35,7 @@ RC_GTEST_PROP(FormatNumber, ReadsBackAsTheSameDouble, (double value)) {
 TEST(Utf8, AcceptsWellFormedTextAlone) {
     EXPECT_EQ(first_invalid_utf8("plain, \xC3\xA9, \xE2\x82\xAC, \xF0\x9F\x98\x80"), std::nullopt);
     EXPECT_EQ(first_invalid_utf8("ab\xFF"), 2u);
-    EXPECT_EQ(first_invalid_utf8("\xC0\xAF"), 0u);          // overlong
+    EXPECT_EQ(first_invalid_utf8("\xC0\xAF"), 0u);           // overlong
     EXPECT_EQ(first_invalid_utf8("a\xED\xA0\x80"), 1u);      // surrogate
     EXPECT_EQ(first_invalid_utf8("a\xF4\x90\x80\x80"), 1u);  // beyond U+10FFFF
     EXPECT_EQ(first_invalid_utf8("ab\xE2\x82"), 2u);         // cut short

@@ -573,7 +573,8 @@ f: [*e,*e,*e])",
     f: [*e,*e,*e]
         ^
   expected aliases that stand for at most 100000 values)"},
-        {std::string(kBase) + R"(name: [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[)",
+        {std::string(kBase) +
+             R"(name: [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[)",
          R"(shot.yaml:4:71: error: the values nest too deeply
     name: [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[
                                                                           ^
@@ -604,23 +605,29 @@ shot.yaml:3:47: error: camera.sensor.fit is 'fill'
 }
 
 TEST_F(Messages, NameAFileThatIsMissingAndOneThatIsNear) {
-    EXPECT_EQ(errors_of("kadr: 1\nscenes: [ aa.glb ]\ncamera: {}\n"), "shot.yaml:2:11: error: scenes.0 is 'aa.glb', which does not exist\n"
-                                                                        "    scenes: [ aa.glb ]\n"
-                                                                        "              ^~~~~~\n"
-                                                                        "  expected a file, looked for as " + (folder_ / "aa.glb").string() + "; did you mean 'a.glb'?");
-    EXPECT_EQ(errors_of(kBase + std::string("environment: { image: elsewhere/sky.exr }\n")), "shot.yaml:4:23: error: environment.image is 'elsewhere/sky.exr', which does not exist\n"
-                                                                                            "    environment: { image: elsewhere/sky.exr }\n"
-                                                                                            "                          ^~~~~~~~~~~~~~~~~\n"
-                                                                                            "  expected a file, looked for as " + (folder_ / "elsewhere/sky.exr").string());
+    EXPECT_EQ(errors_of("kadr: 1\nscenes: [ aa.glb ]\ncamera: {}\n"),
+              "shot.yaml:2:11: error: scenes.0 is 'aa.glb', which does not exist\n"
+              "    scenes: [ aa.glb ]\n"
+              "              ^~~~~~\n"
+              "  expected a file, looked for as " +
+                  (folder_ / "aa.glb").string() + "; did you mean 'a.glb'?");
+    EXPECT_EQ(errors_of(kBase + std::string("environment: { image: elsewhere/sky.exr }\n")),
+              "shot.yaml:4:23: error: environment.image is 'elsewhere/sky.exr', which does not exist\n"
+              "    environment: { image: elsewhere/sky.exr }\n"
+              "                          ^~~~~~~~~~~~~~~~~\n"
+              "  expected a file, looked for as " +
+                  (folder_ / "elsewhere/sky.exr").string());
 }
 
 TEST_F(Messages, TellWhatIsNotUtf8) {
-    EXPECT_EQ(errors_of("kadr: 1\nname: \"caf\xE9\"\n"), "shot.yaml:2:11: error: byte 0xE9 is not UTF-8\n  expected UTF-8 text; save the file in that encoding");
+    EXPECT_EQ(errors_of("kadr: 1\nname: \"caf\xE9\"\n"),
+              "shot.yaml:2:11: error: byte 0xE9 is not UTF-8\n  expected UTF-8 text; save the file in that encoding");
 }
 
 TEST_F(Messages, RefuseDeepNesting) {
     const std::string brackets(100000, '[');
-    EXPECT_THAT(errors_of(kBase + ("name: " + brackets)), ::testing::StartsWith("shot.yaml:4:71: error: the values nest too deeply\n"));
+    EXPECT_THAT(errors_of(kBase + ("name: " + brackets)),
+                ::testing::StartsWith("shot.yaml:4:71: error: the values nest too deeply\n"));
     std::string indented = kBase + std::string("name:\n");
     for (int depth = 1; depth < 400; ++depth) indented += std::string(static_cast<std::size_t>(depth), ' ') + "a:\n";
     EXPECT_THAT(errors_of(indented), ::testing::StartsWith("shot.yaml:68:65: error: the values nest too deeply\n"));
@@ -637,7 +644,8 @@ TEST_F(Messages, RefuseAliasBombs) {
 }
 
 TEST_F(Messages, RefuseHugeFiles) {
-    EXPECT_EQ(errors_of(std::string(kBase) + "# " + std::string(2u << 20, 'x')), "shot.yaml: error: the file has 2097191 bytes\n  expected a shot file of at most 2 MiB");
+    EXPECT_EQ(errors_of(std::string(kBase) + "# " + std::string(2u << 20, 'x')),
+              "shot.yaml: error: the file has 2097191 bytes\n  expected a shot file of at most 2 MiB");
 }
 
 TEST_F(Messages, StopAfterAHundred) {
@@ -647,7 +655,8 @@ TEST_F(Messages, StopAfterAHundred) {
 }
 
 TEST_F(Messages, ListEveryProblemInTheOrderOfTheFile) {
-    const std::string text = "kadr: 1\nrender: { samples: 0 }\nscenes: [ a.glb ]\ncamera: { f_stop: x }\nimage: { size: 3 }\n";
+    const std::string text =
+        "kadr: 1\nrender: { samples: 0 }\nscenes: [ a.glb ]\ncamera: { f_stop: x }\nimage: { size: 3 }\n";
     try {
         parse_shot_text(text, "shot.yaml");
         FAIL();
@@ -719,7 +728,9 @@ output:
     } catch (const InputError& error) {
         std::vector<std::string> found;
         for (const Diagnostic& diagnostic : error.diagnostics()) found.push_back(diagnostic.found);
-        EXPECT_THAT(found, ::testing::ElementsAre("scenes.helmet.nodes is not supported yet", "scenes.helmet.hide is not supported yet", "scenes.copies.instances is not supported yet",
+        EXPECT_THAT(found, ::testing::ElementsAre("scenes.helmet.nodes is not supported yet",
+                                                  "scenes.helmet.hide is not supported yet",
+                                                  "scenes.copies.instances is not supported yet",
                                                   "output.aovs[5]: error is not supported yet"));
     }
 }

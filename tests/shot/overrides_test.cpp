@@ -7,8 +7,12 @@ namespace {
 
 class Overrides : public ShotTest {
 protected:
-    static Shot with(const std::string& key, const std::string& value, const std::string& lines = "") { return parse(lines, set(key, value)); }
-    static std::string errors(const std::string& key, const std::string& value, const std::string& lines = "") { return errors_of(kBase + lines, set(key, value)); }
+    static Shot with(const std::string& key, const std::string& value, const std::string& lines = "") {
+        return parse(lines, set(key, value));
+    }
+    static std::string errors(const std::string& key, const std::string& value, const std::string& lines = "") {
+        return errors_of(kBase + lines, set(key, value));
+    }
     static ShotOverrides set(const std::string& key, const std::string& value) {
         ShotOverrides overrides;
         overrides.set = {{key, value}};
@@ -26,13 +30,21 @@ TEST_F(Overrides, ReplaceAndAddValues) {
 }
 
 TEST_F(Overrides, AreNamedInMessages) {
-    EXPECT_EQ(errors("render.samples", "many"), "--set render.samples=many: error: render.samples is 'many'\n  expected a whole number from 1 to 1048576");
-    EXPECT_EQ(errors("render.sampels", "3"), "--set render.sampels=3: error: unknown key 'sampels' in render\n  did you mean 'samples'?");
-    EXPECT_EQ(errors("lights.kye.intensity", "3", kLights), "--set lights.kye.intensity=3: error: there is no entry 'kye'\n  the list has: key, 1");
-    EXPECT_EQ(errors("render..samples", "3"), "--set render..samples=3: error: 'render..samples' is not a key path\n  expected a path such as render.samples or lights.key.intensity");
+    EXPECT_EQ(
+        errors("render.samples", "many"),
+        "--set render.samples=many: error: render.samples is 'many'\n  expected a whole number from 1 to 1048576");
+    EXPECT_EQ(errors("render.sampels", "3"),
+              "--set render.sampels=3: error: unknown key 'sampels' in render\n  did you mean 'samples'?");
+    EXPECT_EQ(errors("lights.kye.intensity", "3", kLights),
+              "--set lights.kye.intensity=3: error: there is no entry 'kye'\n  the list has: key, 1");
+    EXPECT_EQ(errors("render..samples", "3"),
+              "--set render..samples=3: error: 'render..samples' is not a key path\n  expected a path such as "
+              "render.samples or lights.key.intensity");
     EXPECT_EQ(errors("render.seed.value", "3", "render: { seed: 5 }\n"),
-              "--set render.seed.value=3: error: 'value' is below '5', which is not a section here\n  set the whole value instead, for example --set 'render.seed={ value: 7, animated: true }'");
-    EXPECT_THAT(errors("render", "{ samples: [ }"), ::testing::StartsWith("--set render={ samples: [ }: error: this is not valid YAML: "));
+              "--set render.seed.value=3: error: 'value' is below '5', which is not a section here\n  set the whole "
+              "value instead, for example --set 'render.seed={ value: 7, animated: true }'");
+    EXPECT_THAT(errors("render", "{ samples: [ }"),
+                ::testing::StartsWith("--set render={ samples: [ }: error: this is not valid YAML: "));
 }
 
 TEST_F(Overrides, OfTheCommandLineWin) {
@@ -44,7 +56,10 @@ TEST_F(Overrides, OfTheCommandLineWin) {
     overrides.width = 64;
     overrides.height = 36;
     std::filesystem::create_directories("shots");
-    const Shot shot = parse_shot_text("kadr: 1\nscenes: [ ../a.glb ]\ncamera: {}\nrender: { samples: 9 }\noutput: { video: { file: x.mp4, codec: h265 } }\n", "shots/one.yaml", overrides);
+    const Shot shot = parse_shot_text(
+        "kadr: 1\nscenes: [ ../a.glb ]\ncamera: {}\nrender: { samples: 9 }\noutput: { video: { file: x.mp4, codec: "
+        "h265 } }\n",
+        "shots/one.yaml", overrides);
     EXPECT_THAT(shot.timing.frames, ::testing::ElementsAre(1, 3, 5, 40));
     EXPECT_TRUE(shot.frames_given);
     EXPECT_THAT(shot.output.frames, ::testing::ElementsAre((folder_ / "here.{frame}.png").string()));
@@ -71,7 +86,8 @@ TEST_F(Overrides, ReportTheirOwnProblems) {
     overrides.video = "a.avi";
     const std::string errors = errors_of(kBase, overrides);
     EXPECT_THAT(errors, ::testing::HasSubstr("--frames 9-5: error: timing.frames is 9-5: "));
-    EXPECT_THAT(errors, ::testing::HasSubstr("--video a.avi: error: output.video is 'a.avi'\n  expected a file that ends in"));
+    EXPECT_THAT(errors,
+                ::testing::HasSubstr("--video a.avi: error: output.video is 'a.avi'\n  expected a file that ends in"));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace {
 RC_GTEST_PROP(Units, EveryUnitScalesAsItsRowSays, (double number)) {
     RC_PRE(std::isfinite(number) && std::abs(number) < 1e290);
     for (const UnitSpec& unit : unit_table()) {
-        const ParsedQuantity parsed = parse_quantity(fmt::format("{} {}", format_number(number), unit.name), unit.quantity);
+        const ParsedQuantity parsed =
+            parse_quantity(fmt::format("{} {}", format_number(number), unit.name), unit.quantity);
         RC_ASSERT(parsed.problem == ParsedQuantity::Problem::none);
         RC_ASSERT(parsed.value == number * unit.multiplier / unit.divisor);
     }
@@ -25,9 +26,11 @@ RC_GTEST_PROP(Units, EveryUnitScalesAsItsRowSays, (double number)) {
 
 RC_GTEST_PROP(Units, ABareNumberHasTheNaturalUnit, (double number)) {
     RC_PRE(std::isfinite(number) && std::abs(number) < 1e290);
-    for (const Quantity quantity : {Quantity::angle, Quantity::time, Quantity::length, Quantity::lens, Quantity::power}) {
+    for (const Quantity quantity :
+         {Quantity::angle, Quantity::time, Quantity::length, Quantity::lens, Quantity::power}) {
         const std::string text = format_number(number);
-        RC_ASSERT(parse_quantity(text, quantity).value == parse_quantity(fmt::format("{}{}", text, natural_unit(quantity)), quantity).value);
+        RC_ASSERT(parse_quantity(text, quantity).value ==
+                  parse_quantity(fmt::format("{}{}", text, natural_unit(quantity)), quantity).value);
         RC_ASSERT(parse_quantity(text, quantity).value == from_natural(quantity, number));
     }
 }
@@ -39,9 +42,12 @@ RC_GTEST_PROP(Units, AnyTextEndsInANumberOrAProblem, (std::string text)) {
 
 TEST(Units, RefuseWhatIsNoNumber) {
     using Problem = ParsedQuantity::Problem;
-    for (const char* text : {"", "x", "0x10", "1_000", "1,5", "--1", "+-1", "1 2", "- 1", "1.2.3"}) EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::not_a_number) << text;
-    for (const char* text : {".inf", "-.inf", "+.INF", ".nan", "nan", "inf", "Infinity"}) EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::not_finite) << text;
-    for (const char* text : {"1e400", "-1e400", "1e308 km"}) EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::out_of_range) << text;
+    for (const char* text : {"", "x", "0x10", "1_000", "1,5", "--1", "+-1", "1 2", "- 1", "1.2.3"})
+        EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::not_a_number) << text;
+    for (const char* text : {".inf", "-.inf", "+.INF", ".nan", "nan", "inf", "Infinity"})
+        EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::not_finite) << text;
+    for (const char* text : {"1e400", "-1e400", "1e308 km"})
+        EXPECT_EQ(parse_quantity(text, Quantity::length).problem, Problem::out_of_range) << text;
     EXPECT_EQ(parse_quantity("1 inch", Quantity::length).problem, Problem::wrong_unit);
 }
 
@@ -56,8 +62,11 @@ TEST_F(Loops, KeysComeBackSortedWithTheirValues) {
         RC_PRE(!keys.empty());
         std::string text;
         std::vector<std::pair<int, int>> shuffled(keys.begin(), keys.end());
-        shuffled = *rc::gen::arbitrary<bool>() ? std::vector<std::pair<int, int>>(shuffled.rbegin(), shuffled.rend()) : shuffled;
-        for (const auto& [time, value] : shuffled) text += fmt::format("{}{} {}: [{}, 0, 0]", text.empty() ? "" : ", ", time % 1000000, frames ? "f" : "s", value);
+        shuffled = *rc::gen::arbitrary<bool>() ? std::vector<std::pair<int, int>>(shuffled.rbegin(), shuffled.rend())
+                                               : shuffled;
+        for (const auto& [time, value] : shuffled)
+            text +=
+                fmt::format("{}{} {}: [{}, 0, 0]", text.empty() ? "" : ", ", time % 1000000, frames ? "f" : "s", value);
         std::map<int, int> distinct;
         for (const auto& [time, value] : keys) distinct[time % 1000000] = value;
         RC_PRE(distinct.size() == keys.size());
@@ -85,23 +94,48 @@ Hash view_hash_of(const Shot& shot) {
 
 TEST_F(Loops, HashSeesWhatChangesPixelsAndNothingElse) {
     const Hash base = hash_of(parse(""));
-    for (const char* same : {"name: other", "timing: { frames: 0-9 }", "output: { video: a.mp4, frames: x.png }", "# a comment", "view: { transform: agx }", "output: { png_bits: 16 }"}) {
+    for (const char* same : {"name: other", "timing: { frames: 0-9 }", "output: { video: a.mp4, frames: x.png }",
+                             "# a comment", "view: { transform: agx }", "output: { png_bits: 16 }"}) {
         EXPECT_EQ(hash_of(parse(same)), base) << same;
     }
-    for (const char* other : {"timing: { fps: 25 }", "timing: { first: 1 }", "image: { size: [1280, 721] }", "image: { pixel_aspect: 2 }", "shutter: 0", "lights: [ { type: point } ]", "environment: { strength: 2 }",
-                              "environment: { visible: false }", "use_scene_lights: false", "render: { samples: 65 }", "render: { integrator: direct }", "render: { bounces: { total: 8, glossy: 7 } }",
-                              "render: { filter: box }", "render: { clamp: { direct: 1 } }", "render: { clamp: { indirect: 1 } }", "render: { seed: 1 }", "render: { seed: { animated: true } }",
-                              "render: { cull_backfaces: true }", "render: { motion_tolerance: 1 }", "output: { aovs: [ depth ] }"}) {
+    for (const char* other : {"timing: { fps: 25 }",
+                              "timing: { first: 1 }",
+                              "image: { size: [1280, 721] }",
+                              "image: { pixel_aspect: 2 }",
+                              "shutter: 0",
+                              "lights: [ { type: point } ]",
+                              "environment: { strength: 2 }",
+                              "environment: { visible: false }",
+                              "use_scene_lights: false",
+                              "render: { samples: 65 }",
+                              "render: { integrator: direct }",
+                              "render: { bounces: { total: 8, glossy: 7 } }",
+                              "render: { filter: box }",
+                              "render: { clamp: { direct: 1 } }",
+                              "render: { clamp: { indirect: 1 } }",
+                              "render: { seed: 1 }",
+                              "render: { seed: { animated: true } }",
+                              "render: { cull_backfaces: true }",
+                              "render: { motion_tolerance: 1 }",
+                              "output: { aovs: [ depth ] }"}) {
         EXPECT_NE(hash_of(parse(other)), base) << other;
     }
-    for (const char* camera : {"{ position: [0, 0, 6] }", "{ look_at: a }", "{ up: [1, 0, 0] }", "{ focal_length: 50 mm }", "{ vertical_fov: 40 deg }", "{ f_stop: 2 }", "{ focus: 2 }", "{ blades: 5 }", "{ sensor: { fit: vertical } }", "{ gltf: a/C }"}) {
+    for (const char* camera : {"{ position: [0, 0, 6] }", "{ look_at: a }", "{ up: [1, 0, 0] }",
+                               "{ focal_length: 50 mm }", "{ vertical_fov: 40 deg }", "{ f_stop: 2 }", "{ focus: 2 }",
+                               "{ blades: 5 }", "{ sensor: { fit: vertical } }", "{ gltf: a/C }"}) {
         EXPECT_NE(hash_of(parse_camera(camera)), base) << camera;
     }
-    for (const char* scene : {"{ gltf: a.glb, transform: { scale: 2 } }", "{ gltf: a.glb, transform: { rotate: [0, 1, 0] } }", "{ gltf: a.glb, animation: { clip: none } }", "{ gltf: a.glb, animation: { speed: 2 } }", "{ gltf: a.glb, animation: { start: 1 } }"}) {
+    for (const char* scene :
+         {"{ gltf: a.glb, transform: { scale: 2 } }", "{ gltf: a.glb, transform: { rotate: [0, 1, 0] } }",
+          "{ gltf: a.glb, animation: { clip: none } }", "{ gltf: a.glb, animation: { speed: 2 } }",
+          "{ gltf: a.glb, animation: { start: 1 } }"}) {
         EXPECT_NE(hash_of(parse_scene(scene)), base) << scene;
     }
-    EXPECT_EQ(hash_of(parse_scene("{ id: a, gltf: b.gltf }")), base);  // the content of assets is hashed where it is read
-    for (const char* view : {"view: { transform: agx }", "view: { exposure: 1 }", "view: { exposure: auto }", "output: { png_bits: 16 }"}) EXPECT_NE(view_hash_of(parse(view)), view_hash_of(parse(""))) << view;
+    EXPECT_EQ(hash_of(parse_scene("{ id: a, gltf: b.gltf }")),
+              base);  // the content of assets is hashed where it is read
+    for (const char* view :
+         {"view: { transform: agx }", "view: { exposure: 1 }", "view: { exposure: auto }", "output: { png_bits: 16 }"})
+        EXPECT_NE(view_hash_of(parse(view)), view_hash_of(parse(""))) << view;
 }
 
 constexpr const char* kSeedShot = R"(kadr: 1
@@ -125,14 +159,22 @@ output: { frames: "out.{frame:04}.exr", aovs: [ depth ], video: { file: out.mp4,
 
 /// One random edit: a byte or a piece of the format's own alphabet put in, a stretch removed or copied elsewhere.
 std::string mutated(std::string text, std::mt19937& random) {
-    static const std::vector<std::string> kPieces{"[", "]", "{", "}", ":", ": ", ",", "\n", "- ", "&a ", "*a", "'", "\"", "|", ">", "#", "?", "!", "%", "@", "\t", "null", "1e400", ".nan", "keys", "---\n", "<<: ", "0", "-", "\xC3\xA9", "\xFF", std::string(1, '\0')};
+    static const std::vector<std::string> kPieces{
+        "[",    "]",     "{",    "}", ":",  ": ",       ",",     "\n",
+        "- ",   "&a ",   "*a",   "'", "\"", "|",        ">",     "#",
+        "?",    "!",     "%",    "@", "\t", "null",     "1e400", ".nan",
+        "keys", "---\n", "<<: ", "0", "-",  "\xC3\xA9", "\xFF",  std::string(1, '\0')};
     const auto below = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
     const std::size_t at = below(text.size() + 1), length = below(12);
     switch (below(4)) {
-        case 0: return text.insert(at, kPieces[below(kPieces.size())]);
-        case 1: return text.erase(at, length);
-        case 2: return text.insert(at, text.substr(below(text.size() + 1), length * 4));
-        default: return text.insert(at, std::string(1, static_cast<char>(below(256))));
+        case 0:
+            return text.insert(at, kPieces[below(kPieces.size())]);
+        case 1:
+            return text.erase(at, length);
+        case 2:
+            return text.insert(at, text.substr(below(text.size() + 1), length * 4));
+        default:
+            return text.insert(at, std::string(1, static_cast<char>(below(256))));
     }
 }
 
@@ -166,7 +208,8 @@ TEST_F(Loops, AShotIsReadWithinMilliseconds) {
     const auto begin = std::chrono::steady_clock::now();
     constexpr int kRuns = 10;
     for (int i = 0; i < kRuns; ++i) parse_shot_text(kSeedShot, "shot.yaml");
-    const double milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / kRuns;
+    const double milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / kRuns;
     EXPECT_LT(milliseconds, 25);  // half of what `kadr check` has in all; measured below 2 ms in a release build
 }
 

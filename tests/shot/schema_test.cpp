@@ -30,7 +30,8 @@ TEST(Schema, DescribesEveryKey) {
     const std::string manual = describe_schema("");
     for (const FieldSpec& field : schema_table()) {
         EXPECT_THAT(describe_schema(field.path), HasSubstr(field.doc)) << field.path;
-        const bool heading = std::string_view(field.path) == "track" || std::string_view(field.path) == "key" || std::string_view(field.path) == "rotation";
+        const bool heading = std::string_view(field.path) == "track" || std::string_view(field.path) == "key" ||
+                             std::string_view(field.path) == "rotation";
         EXPECT_TRUE(heading || manual.find(field.doc) != std::string::npos) << field.path;
     }
 }
@@ -60,8 +61,10 @@ std::string unknown(std::string_view key) {
 }
 
 TEST(Schema, HelpsWithUnknownKeys) {
-    EXPECT_EQ(unknown("render.sampels"), "error: the shot format has no key 'render.sampels'\n  did you mean render.samples?");
-    EXPECT_EQ(unknown("look_at"), "error: the shot format has no key 'look_at'\n  did you mean camera.look_at or lights.look_at?");
+    EXPECT_EQ(unknown("render.sampels"),
+              "error: the shot format has no key 'render.sampels'\n  did you mean render.samples?");
+    EXPECT_EQ(unknown("look_at"),
+              "error: the shot format has no key 'look_at'\n  did you mean camera.look_at or lights.look_at?");
     EXPECT_EQ(unknown("xyzzy"), "error: the shot format has no key 'xyzzy'\n  `kadr describe` lists all keys");
 }
 
@@ -85,7 +88,8 @@ TEST(Schema, JsonHasEveryKey) {
     for (const FieldSpec& field : schema_table()) {
         const std::string path = field.path;
         const bool grammar = path.starts_with("track") || path.starts_with("key") || path.starts_with("rotation");
-        if (grammar || path == "kadr-reel" || path.starts_with("render.samples.")) continue;  // no values of a shot that can be written
+        if (grammar || path == "kadr-reel" || path.starts_with("render.samples."))
+            continue;  // no values of a shot that can be written
         const nlohmann::json* at = &schema;
         for (std::size_t begin = 0; at && begin <= path.size();) {
             const std::size_t end = std::min(path.find('.', begin), path.size());
@@ -100,7 +104,9 @@ TEST(Schema, JsonHasEveryKey) {
 
 // Words of the table stand in the order of the enums that they become.
 TEST(Schema, ChoicesAreInTheOrderOfTheirEnums) {
-    const auto name = [](const char* path, auto value) { return choices_of(*find_field(path))[static_cast<std::size_t>(value)].name; };
+    const auto name = [](const char* path, auto value) {
+        return choices_of(*find_field(path))[static_cast<std::size_t>(value)].name;
+    };
     EXPECT_EQ(name("lights.type", LightKind::spot), "spot");
     EXPECT_EQ(name("lights.type", LightKind::area), "area");
     EXPECT_EQ(name("lights.falloff", SpotFalloff::blender), "blender");

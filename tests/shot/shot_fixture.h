@@ -28,12 +28,19 @@ protected:
         std::filesystem::remove_all(folder_);
     }
 
-    static constexpr const char* kBase = "kadr: 1\nscenes: [ a.glb ]\ncamera: {}\n";  // what a test's lines follow: line 4
+    static constexpr const char* kBase =
+        "kadr: 1\nscenes: [ a.glb ]\ncamera: {}\n";  // what a test's lines follow: line 4
 
     /// A shot of the required keys and some more lines.
-    static Shot parse(const std::string& lines, const ShotOverrides& overrides = {}) { return parse_shot_text(kBase + lines, "shot.yaml", overrides); }
-    static Shot parse_camera(const std::string& camera) { return parse_shot_text("kadr: 1\nscenes: [ a.glb ]\ncamera: " + camera + "\n", "shot.yaml"); }
-    static Shot parse_scene(const std::string& scene) { return parse_shot_text("kadr: 1\nscenes: [ " + scene + " ]\ncamera: {}\n", "shot.yaml"); }
+    static Shot parse(const std::string& lines, const ShotOverrides& overrides = {}) {
+        return parse_shot_text(kBase + lines, "shot.yaml", overrides);
+    }
+    static Shot parse_camera(const std::string& camera) {
+        return parse_shot_text("kadr: 1\nscenes: [ a.glb ]\ncamera: " + camera + "\n", "shot.yaml");
+    }
+    static Shot parse_scene(const std::string& scene) {
+        return parse_shot_text("kadr: 1\nscenes: [ " + scene + " ]\ncamera: {}\n", "shot.yaml");
+    }
 
     /// All messages of a text, or "no error".
     static std::string errors_of(const std::string& text, const ShotOverrides& overrides = {}) {

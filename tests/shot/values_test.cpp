@@ -28,7 +28,8 @@ TEST_F(Values, DefaultsAreThoseOfTheFormat) {
     EXPECT_EQ(shot.scenes[0].clip_speed, 1);
     EXPECT_EQ(shot.camera.up, Track<glm::dvec3>(glm::dvec3(0, 1, 0)));
     EXPECT_EQ(shot.camera.sensor_mm, glm::dvec2(36, 24));
-    EXPECT_FALSE(shot.camera.focal_length_mm || shot.camera.vertical_fov_rad || shot.camera.f_stop || shot.camera.focus);
+    EXPECT_FALSE(shot.camera.focal_length_mm || shot.camera.vertical_fov_rad || shot.camera.f_stop ||
+                 shot.camera.focus);
     EXPECT_EQ(shot.shutter, (Shutter{0, 0.5}));
     EXPECT_TRUE(shot.lights.empty());
     EXPECT_TRUE(shot.use_scene_lights);
@@ -64,8 +65,10 @@ TEST_F(Values, UnitsAreConvertedExactlyOnce) {
     EXPECT_EQ(parse_camera("{ focal_length: 3.5cm }").camera.focal_length_mm, Track<double>(35.0));
     EXPECT_EQ(parse_camera("{ vertical_fov: 1 rad }").camera.vertical_fov_rad, Track<double>(1.0));
     EXPECT_EQ(parse_camera("{ vertical_fov: 90 }").camera.vertical_fov_rad, Track<double>(kPi / 2));
-    EXPECT_EQ(parse_camera("{ position: [1, 20 cm, 35 mm] }").camera.position, Track<glm::dvec3>(glm::dvec3(1, 0.2, 0.035)));
-    EXPECT_EQ(parse_camera("{ position: [+1e1, -.5, 2 km] }").camera.position, Track<glm::dvec3>(glm::dvec3(10, -0.5, 2000)));
+    EXPECT_EQ(parse_camera("{ position: [1, 20 cm, 35 mm] }").camera.position,
+              Track<glm::dvec3>(glm::dvec3(1, 0.2, 0.035)));
+    EXPECT_EQ(parse_camera("{ position: [+1e1, -.5, 2 km] }").camera.position,
+              Track<glm::dvec3>(glm::dvec3(10, -0.5, 2000)));
     EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 250 ms } }").scenes[0].clip_start_s, 0.25);
     EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 12 f } }").scenes[0].clip_start_s, 0.5);
     EXPECT_EQ(parse("image: { size: [640 px, 360] }").image.width, 640);
@@ -87,7 +90,10 @@ TEST_F(Values, FramesTakeEveryForm) {
 }
 
 TEST_F(Values, KeyTimesAreExact) {
-    const Shot shot = parse_shot_text("kadr: 1\nscenes: [ a.glb ]\ntiming: { fps: 24000/1001, first: 1 }\ncamera: { f_stop: { keys: { 1 s: 4, 1 f: 1, 25 f: 2, 80 ms: 3 } } }\n", "shot.yaml");
+    const Shot shot = parse_shot_text(
+        "kadr: 1\nscenes: [ a.glb ]\ntiming: { fps: 24000/1001, first: 1 }\ncamera: { f_stop: { keys: { 1 s: 4, 1 f: "
+        "1, 25 f: 2, 80 ms: 3 } } }\n",
+        "shot.yaml");
     const auto& keys = shot.camera.f_stop->keys;
     ASSERT_EQ(keys.size(), 4u);
     EXPECT_EQ(keys[0].time_s, 0);  // frame 1 is the first
@@ -99,14 +105,17 @@ TEST_F(Values, KeyTimesAreExact) {
 }
 
 TEST_F(Values, TracksHaveInterpolationAndEases) {
-    const Shot shot = parse_camera("{ f_stop: { keys: { 0 s: { value: 1, ease: in-out }, 1 s: { value: 2, ease: [0.1, -1, 0.2, 2] }, 2 s: { value: 3, ease: in }, 3 s: { value: 4, ease: out } }, interpolate: smooth, before: hold, after: hold } }");
+    const Shot shot = parse_camera(
+        "{ f_stop: { keys: { 0 s: { value: 1, ease: in-out }, 1 s: { value: 2, ease: [0.1, -1, 0.2, 2] }, 2 s: { "
+        "value: 3, ease: in }, 3 s: { value: 4, ease: out } }, interpolate: smooth, before: hold, after: hold } }");
     const Track<double>& track = *shot.camera.f_stop;
     EXPECT_EQ(track.interpolation, Interpolation::smooth);
     EXPECT_EQ(track.keys[0].ease, (Ease{0.42, 0, 0.58, 1}));
     EXPECT_EQ(track.keys[1].ease, (Ease{0.1, -1, 0.2, 2}));
     EXPECT_EQ(track.keys[2].ease, (Ease{0.42, 0, 1, 1}));
     EXPECT_EQ(track.keys[3].ease, (Ease{0, 0, 0.58, 1}));
-    EXPECT_EQ(parse_camera("{ f_stop: { keys: { 0: 1, 1: 2 }, interpolate: step } }").camera.f_stop->interpolation, Interpolation::step);
+    EXPECT_EQ(parse_camera("{ f_stop: { keys: { 0: 1, 1: 2 }, interpolate: step } }").camera.f_stop->interpolation,
+              Interpolation::step);
     EXPECT_EQ(parse_camera("{ f_stop: { keys: { 0: 1, 1: 2 } } }").camera.f_stop->interpolation, Interpolation::linear);
 }
 
@@ -115,10 +124,18 @@ glm::dquat orientation(const Shot& shot) { return shot.scenes[0].transform.rotat
 TEST_F(Values, RotationsTakeDegreesQuaternionsAndAxes) {
     const glm::dquat quarter(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
     // One rounding of each of sine, cosine and normalisation.
-    EXPECT_NEAR(std::abs(glm::dot(orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 90 deg, 0] } }")), quarter)), 1, 1e-15);
-    EXPECT_NEAR(std::abs(glm::dot(orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 1.5707963267948966 rad, 0] } }")), quarter)), 1, 1e-15);
-    EXPECT_NEAR(std::abs(glm::dot(orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 2, 0, 2] } }")), quarter)), 1, 1e-15);
-    const Shot turning = parse_scene("{ gltf: a.glb, transform: { rotate: { axis: [0, 0, 2], angle: { keys: { 0 s: 0, 1 s: 720 } } } } }");
+    EXPECT_NEAR(
+        std::abs(glm::dot(orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 90 deg, 0] } }")), quarter)),
+        1, 1e-15);
+    EXPECT_NEAR(std::abs(glm::dot(
+                    orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 1.5707963267948966 rad, 0] } }")),
+                    quarter)),
+                1, 1e-15);
+    EXPECT_NEAR(
+        std::abs(glm::dot(orientation(parse_scene("{ gltf: a.glb, transform: { rotate: [0, 2, 0, 2] } }")), quarter)),
+        1, 1e-15);
+    const Shot turning = parse_scene(
+        "{ gltf: a.glb, transform: { rotate: { axis: [0, 0, 2], angle: { keys: { 0 s: 0, 1 s: 720 } } } } }");
     const auto& axis_angle = turning.scenes[0].transform.rotate.axis_angle;
     ASSERT_TRUE(axis_angle);
     EXPECT_EQ(axis_angle->axis, glm::dvec3(0, 0, 1));
@@ -126,18 +143,27 @@ TEST_F(Values, RotationsTakeDegreesQuaternionsAndAxes) {
 }
 
 TEST_F(Values, RotationsOfMoreThanHalfATurnAreWarnedAbout) {
-    const Shot shot = parse_scene("{ gltf: a.glb, transform: { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 360, 0] } } } }");
+    const Shot shot =
+        parse_scene("{ gltf: a.glb, transform: { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 360, 0] } } } }");
     ASSERT_EQ(shot.warnings.size(), 1u);
     EXPECT_TRUE(shot.warnings[0].warning);
     EXPECT_EQ(shot.warnings[0].found, "scenes.0.transform.rotate turns more than 180 deg between two keys");
     // Step keys do not turn, so neither half a turn nor more is a problem.
-    EXPECT_TRUE(parse_scene("{ gltf: a.glb, transform: { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 180, 0], 2 s: [0, 0, 0] }, interpolate: step } } }").warnings.empty());
+    EXPECT_TRUE(parse_scene("{ gltf: a.glb, transform: { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 180, 0], 2 s: [0, "
+                            "0, 0] }, interpolate: step } } }")
+                    .warnings.empty());
 }
 
 TEST_F(Values, ScaleIsOneFactorOrThree) {
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: 2 } }").scenes[0].transform.scale, Track<glm::dvec3>(glm::dvec3(2)));
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: [1, -2, 3] } }").scenes[0].transform.scale, Track<glm::dvec3>(glm::dvec3(1, -2, 3)));
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: { keys: { 0: 1, 1: [1, 2, 3] } } } }").scenes[0].transform.scale.keys[1].value, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: 2 } }").scenes[0].transform.scale,
+              Track<glm::dvec3>(glm::dvec3(2)));
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: [1, -2, 3] } }").scenes[0].transform.scale,
+              Track<glm::dvec3>(glm::dvec3(1, -2, 3)));
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, transform: { scale: { keys: { 0: 1, 1: [1, 2, 3] } } } }")
+                  .scenes[0]
+                  .transform.scale.keys[1]
+                  .value,
+              glm::dvec3(1, 2, 3));
 }
 
 TEST_F(Values, ClipsAreNamedCountedAllOrNone) {
@@ -147,19 +173,25 @@ TEST_F(Values, ClipsAreNamedCountedAllOrNone) {
     EXPECT_EQ(named.clip_name, "Walk");
     EXPECT_EQ(named.clip_speed, -2);
     EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: 3 } }").scenes[0].clip_index, 3);
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"all\" } }").scenes[0].clip_name, "all");  // in quotes: a clip of that name
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"all\" } }").scenes[0].clip_name,
+              "all");  // in quotes: a clip of that name
     EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"3\" } }").scenes[0].clip_name, "3");
 }
 
 TEST_F(Values, CameraLooksAtPointsNodesAndTracks) {
     EXPECT_EQ(parse_camera("{ look_at: [1, 2, 3] }").camera.look_at, Target(Track<glm::dvec3>(glm::dvec3(1, 2, 3))));
     EXPECT_EQ(std::get<NodeReference>(parse_camera("{ look_at: a/Visor }").camera.look_at).text, "a/Visor");
-    EXPECT_EQ(std::get<NodeReference>(parse_camera("{ look_at: a/Visor }").camera.look_at).where, (SourceLocation{"shot.yaml", 3, 20}));
-    EXPECT_EQ(std::get<Track<glm::dvec3>>(parse_camera("{ look_at: { keys: { 0: [0, 0, 0], 1: [1, 1, 1] } } }").camera.look_at).keys.size(), 2u);
+    EXPECT_EQ(std::get<NodeReference>(parse_camera("{ look_at: a/Visor }").camera.look_at).where,
+              (SourceLocation{"shot.yaml", 3, 20}));
+    EXPECT_EQ(std::get<Track<glm::dvec3>>(
+                  parse_camera("{ look_at: { keys: { 0: [0, 0, 0], 1: [1, 1, 1] } } }").camera.look_at)
+                  .keys.size(),
+              2u);
     EXPECT_EQ(parse_camera("{ gltf: a/Cam, focus: 2 m, f_stop: 4 }").camera.gltf->text, "a/Cam");
     EXPECT_EQ(std::get<Track<double>>(*parse_camera("{ focus: 150 cm }").camera.focus), Track<double>(1.5));
     EXPECT_EQ(std::get<NodeReference>(*parse_camera("{ focus: a }").camera.focus).text, "a");
-    EXPECT_EQ(parse_camera("{ sensor: { size: [23.6, 15.6 mm], fit: vertical }, blades: 7 }").camera.fit, CameraSpec::Fit::vertical);
+    EXPECT_EQ(parse_camera("{ sensor: { size: [23.6, 15.6 mm], fit: vertical }, blades: 7 }").camera.fit,
+              CameraSpec::Fit::vertical);
 }
 
 TEST_F(Values, ShutterHasAnAngleOrTwoTimes) {
@@ -174,8 +206,10 @@ TEST_F(Values, ShutterHasAnAngleOrTwoTimes) {
 TEST_F(Values, LightsHaveTheUnitsOfTheirKind) {
     const Shot shot = parse(
         "lights:\n"
-        "  - { id: sun, type: directional, illuminance: 50000 lux, direction: [-1, -2, -1], angular_diameter: 0.53 deg }\n"
-        "  - { id: key, type: spot, intensity: { keys: { 0 s: 0 cd, 2 s: 800 cd } }, inner: 20 deg, outer: 35 deg, range: 20 m, falloff: blender, look_at: a }\n"
+        "  - { id: sun, type: directional, illuminance: 50000 lux, direction: [-1, -2, -1], angular_diameter: 0.53 deg "
+        "}\n"
+        "  - { id: key, type: spot, intensity: { keys: { 0 s: 0 cd, 2 s: 800 cd } }, inner: 20 deg, outer: 35 deg, "
+        "range: 20 m, falloff: blender, look_at: a }\n"
         "  - { type: point, power: 800 lm, radius: 3 cm, color: [1, 0.5, 0] }\n"
         "  - { type: area, luminance: 2000 nt, size: [1, 0.5] }\n");
     ASSERT_EQ(shot.lights.size(), 4u);
@@ -194,7 +228,10 @@ TEST_F(Values, LightsHaveTheUnitsOfTheirKind) {
 }
 
 TEST_F(Values, RenderSettingsTakeShortForms) {
-    const RenderSpec whole = parse("render: { integrator: direct, samples: 16, bounces: 3, filter: box, seed: 7, clamp: { indirect: 10 }, cull_backfaces: true }").render;
+    const RenderSpec whole = parse(
+                                 "render: { integrator: direct, samples: 16, bounces: 3, filter: box, seed: 7, clamp: "
+                                 "{ indirect: 10 }, cull_backfaces: true }")
+                                 .render;
     EXPECT_EQ(whole.integrator, Integrator::direct);
     EXPECT_EQ(whole.bounces, (RenderSpec::Bounces{3, 3, 3, 3}));
     EXPECT_EQ(whole.filter, FilterKind::box);
@@ -203,7 +240,10 @@ TEST_F(Values, RenderSettingsTakeShortForms) {
     EXPECT_FALSE(whole.clamp_direct);
     EXPECT_EQ(whole.clamp_indirect, 10);
     EXPECT_TRUE(whole.cull_backfaces);
-    const RenderSpec parts = parse("render: { bounces: { total: 6, diffuse: 2 }, filter: { type: mitchell, width: 2 px }, seed: { value: 4294967295, animated: true } }").render;
+    const RenderSpec parts = parse(
+                                 "render: { bounces: { total: 6, diffuse: 2 }, filter: { type: mitchell, width: 2 px "
+                                 "}, seed: { value: 4294967295, animated: true } }")
+                                 .render;
     EXPECT_EQ(parts.bounces, (RenderSpec::Bounces{6, 2, 6, 6}));
     EXPECT_EQ(parts.filter_width_px, 2);
     EXPECT_EQ(parts.seed, 4294967295u);
@@ -217,18 +257,26 @@ TEST_F(Values, ExposureTakesEveryForm) {
     // The factor is 1 / (1.2 * 2^ev100); two roundings of numbers near 15.
     EXPECT_NEAR(std::exp2(parse("view: { exposure: { ev100: 15 } }").view.exposure_stops), 1 / (1.2 * 32768), 1e-18);
     // f/16 at 1/100 s and ISO 100 is EV log2(25600).
-    EXPECT_NEAR(parse("view: { exposure: { iso: 100, time: 10 ms, f_stop: 16 } }").view.exposure_stops, -std::log2(25600 * 1.2), 1e-13);
-    EXPECT_NEAR(parse("view: { exposure: { iso: 200, time: 0.01 s, f_stop: 16 } }").view.exposure_stops, -std::log2(12800 * 1.2), 1e-13);
+    EXPECT_NEAR(parse("view: { exposure: { iso: 100, time: 10 ms, f_stop: 16 } }").view.exposure_stops,
+                -std::log2(25600 * 1.2), 1e-13);
+    EXPECT_NEAR(parse("view: { exposure: { iso: 200, time: 0.01 s, f_stop: 16 } }").view.exposure_stops,
+                -std::log2(12800 * 1.2), 1e-13);
 }
 
 TEST_F(Values, OutputsFillTheNameIn) {
-    const OutputSpec output = parse("name: orbit\ntiming: { frames: 0-9 }\noutput: { frames: [\"out/{name}.{frame:04}.exr\", \"../{name}/{frame}.png\"], aovs: [ depth, motion ], png_bits: 16, video: \"{name}.mkv\" }").output;
-    EXPECT_THAT(output.frames, ::testing::ElementsAre((folder_ / "out/orbit.{frame:04}.exr").string(), (folder_.parent_path() / "orbit/{frame}.png").string()));
+    const OutputSpec output =
+        parse(
+            "name: orbit\ntiming: { frames: 0-9 }\noutput: { frames: [\"out/{name}.{frame:04}.exr\", "
+            "\"../{name}/{frame}.png\"], aovs: [ depth, motion ], png_bits: 16, video: \"{name}.mkv\" }")
+            .output;
+    EXPECT_THAT(output.frames, ::testing::ElementsAre((folder_ / "out/orbit.{frame:04}.exr").string(),
+                                                      (folder_.parent_path() / "orbit/{frame}.png").string()));
     EXPECT_THAT(output.aovs, ::testing::ElementsAre(Aov::depth, Aov::motion));
     EXPECT_EQ(output.png_bits, 16);
     EXPECT_EQ(output.video->file, folder_ / "orbit.mkv");
     EXPECT_FALSE(output.video->codec);
-    const VideoSpec video = *parse("output: { video: { file: a.mov, codec: h265, crf: 20, pixel_format: yuv422p10le } }").output.video;
+    const VideoSpec video =
+        *parse("output: { video: { file: a.mov, codec: h265, crf: 20, pixel_format: yuv422p10le } }").output.video;
     EXPECT_EQ(video.codec, VideoCodec::h265);
     EXPECT_EQ(video.crf, 20);
     EXPECT_EQ(video.pixel_format, "yuv422p10le");
@@ -237,14 +285,16 @@ TEST_F(Values, OutputsFillTheNameIn) {
 
 TEST_F(Values, PathsInAFileAreRelativeToTheFile) {
     std::filesystem::create_directories("shots");
-    const Shot shot = parse_shot_text("kadr: 1\nscenes: [ ../a.glb ]\ncamera: {}\noutput: { frames: \"{frame}.png\" }\n", "shots/one.yaml");
+    const Shot shot = parse_shot_text(
+        "kadr: 1\nscenes: [ ../a.glb ]\ncamera: {}\noutput: { frames: \"{frame}.png\" }\n", "shots/one.yaml");
     EXPECT_EQ(shot.scenes[0].gltf, folder_ / "a.glb");
     EXPECT_EQ(shot.output.frames[0], (folder_ / "shots/{frame}.png").string());
     EXPECT_EQ(shot.file, folder_ / "shots/one.yaml");
 }
 
 TEST_F(Values, FilesMayHaveAByteOrderMarkWindowsLinesAndAliases) {
-    const Shot shot = parse_shot_text("\xEF\xBB\xBFkadr: 1\r\nscenes: [ a.glb ]\r\ncamera: { position: &p [1, 2, 3], up: *p }\r\n", "shot.yaml");
+    const Shot shot = parse_shot_text(
+        "\xEF\xBB\xBFkadr: 1\r\nscenes: [ a.glb ]\r\ncamera: { position: &p [1, 2, 3], up: *p }\r\n", "shot.yaml");
     EXPECT_EQ(shot.camera.up, shot.camera.position);
 }
 
