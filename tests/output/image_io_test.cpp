@@ -97,11 +97,12 @@ TEST(ImageIo, Png8And16ComeBackExactly) {
 TEST(ImageIo, PngRoundsAndClamps) {
     const TemporaryFolder folder;
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    image_io().write(folder / "a.png", "png", test::plain_image(1, 1, {"R", "G", "B"}, {100.4f / 255, 2, nan}), 8, {});
-    const Image back = image_io().read(folder / "a.png");
-    EXPECT_EQ(std::lround(back.pixels[0] * 255), 100);
-    EXPECT_EQ(back.pixels[1], 1);
-    EXPECT_EQ(back.pixels[2], 0);
+    image_io().write(folder / "a.png", "png", test::plain_image(1, 1, {"R", "G", "B"}, {100.4f / 255, 100.6f / 255, 0.5f}), 8, {});
+    image_io().write(folder / "b.png", "png", test::plain_image(1, 1, {"R", "G", "B"}, {2, -1, nan}), 8, {});
+    const Image rounded = image_io().read(folder / "a.png"), clamped = image_io().read(folder / "b.png");
+    EXPECT_EQ(std::lround(rounded.pixels[0] * 255), 100);
+    EXPECT_EQ(std::lround(rounded.pixels[1] * 255), 101);
+    EXPECT_EQ(clamped.pixels, (std::vector<float>{1, 0, 0}));
 }
 
 TEST(ImageIo, PngAlphaIsStoredUnpremultipliedAndReadPremultiplied) {
