@@ -9,7 +9,7 @@ import unittest
 import program
 from program import ProgramTest, png, texts_but_seconds
 
-SLOW = dict(last=23, samples=64, width=160, height=120)
+SLOW = dict(last=15, samples=24, width=160, height=120)
 
 
 class Render(ProgramTest):
@@ -57,7 +57,7 @@ class Render(ProgramTest):
         self.assertEqual(png(alone)[0], png(ranged)[0])
         self.assertEqual(texts_but_seconds(alone), texts_but_seconds(ranged))
         self.assertNotEqual(png(ranged)[0], png(self.folder / "t1/ball.0002.png")[0], "the ball turns")
-        self.assertTrue(any("settings" in key for key in texts_but_seconds(alone)), "metadata is there to compare")
+        self.assertTrue(any("settings" in value for value in texts_but_seconds(alone).values()), "metadata is there to compare")
 
     def test_works_from_any_folder(self):
         elsewhere = self.folder / "elsewhere"
@@ -144,7 +144,7 @@ class Interrupted(ProgramTest):
         process.kill()
         process.communicate()
         complete = self.frames()
-        self.assertLess(len(complete), 24)
+        self.assertLess(len(complete), 16)
         self.assertFalse((self.folder / "out/ball.mp4").exists())
         summary = json.loads(self.run_kadr("render", whole, "--json").out.splitlines()[-1])
         self.assertEqual(summary["reused"], len(complete))
