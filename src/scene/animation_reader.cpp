@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "scene/accessor.h"
 
@@ -107,7 +108,9 @@ public:
     }
 
     Clip read() {
-        for (std::size_t i = 0; i < source_.channels.size(); ++i) channel(i);
+        // From the JSON: tinygltf leaves out channels that name no node.
+        const nlohmann::json& channels = document_.json()["animations"][index_]["channels"];
+        for (std::size_t i = 0; i < channels.size(); ++i) channel(i, channels[i]);
         if (clip_.begin_s > clip_.end_s) clip_.begin_s = clip_.end_s = 0;
         return std::move(clip_);
     }
@@ -119,12 +122,24 @@ private:
         document_.warnings.push_back(document_.warning(pointer(channel), found + " and is ignored"));
     }
 
-    void channel(std::size_t i) {
-        const tinygltf::AnimationChannel& channel = source_.channels[i];
+    /// One warning for a file, however many channels point into extensions.
+    void warn_of_pointer(std::size_t i) {
+        constexpr std::string_view kExtension = "KHR_animation_pointer";
+        for (const Diagnostic& earlier : document_.warnings)
+            if (earlier.found.find(kExtension) != std::string::npos) return;
+        warn(i, "animates a property through KHR_animation_pointer, which is not supported,");
+    }
+
+    void channel(std::size_t i, const nlohmann::json& json) {
+        const nlohmann::json& target = json["target"];
+        tinygltf::AnimationChannel channel;
+        channel.sampler = json["sampler"].get<int>();
+        channel.target_node = target.contains("node") ? target["node"].get<int>() : -1;
+        channel.target_path = target["path"].get<std::string>();
         const std::string& path = channel.target_path;
         if (static_cast<std::size_t>(channel.sampler) >= source_.samplers.size())
             document_.fail(pointer(i) + "/sampler", fmt::format("is {}", channel.sampler), fmt::format("expected an index into the animation's {} samplers", source_.samplers.size()));
-        if (path == "pointer") return warn(i, "animates a property through KHR_animation_pointer, which is not supported,");
+        if (path == "pointer") return warn_of_pointer(i);
         if (path == "weights") return warn(i, "animates morph weights of a node without morph targets");
         if (path != "translation" && path != "rotation" && path != "scale")
             document_.fail(pointer(i) + "/target/path", fmt::format("is \"{}\"", path.substr(0, 60)), "expected one of: translation rotation scale weights");
