@@ -141,6 +141,16 @@ TEST(MotionFrames, FollowAnOrbitingChild) {
     EXPECT_EQ((snapshot.motion.headers[0].frame_count - 1) % 2, 0u);  // the key at 0.5 lies on the grid
 }
 
+TEST(MotionFrames, HaveAFrameWhereTheClipHasAKey) {
+    Stage stage;
+    stage.animate(stage.add_node("a")).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {1 / 3.0, {1, 0, 0}}, {1, {0, 0, 0}}});
+    const SceneSnapshot snapshot = stage.snapshot();
+    const kernels::TransformHeader header = snapshot.motion.headers[0];
+    ASSERT_EQ(header.frame_count, 4u);  // beside the grid it would take all 129
+    EXPECT_EQ(snapshot.motion.srt[header.first_frame + 1].translation[0], 1);
+    EXPECT_LT(snapshot.motion.max_error_px, 1e-9);
+}
+
 TEST(MotionFrames, ShearUnderARotatingStretchedParentUsesMatrices) {
     Stage stage;
     const int parent = stage.add_node("parent", -1, false);
