@@ -68,6 +68,8 @@ struct SceneView {
     const Texture* textures;
     LightSet lights;
     Camera camera;
+    const Affine* previous_matrices; ///< [instance] world_from_object one frame earlier; null: no motion layer
+    Camera previous_camera;          ///< one key
     Settings settings;
 };
 

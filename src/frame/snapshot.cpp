@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "base/hash.h"
 #include "base/text.h"
@@ -156,6 +157,22 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
                                 "expected a slower rotation or a shorter shutter"));
 }
 
+bool wants_motion(const Shot& shot) { return std::find(shot.output.aovs.begin(), shot.output.aovs.end(), Aov::motion) != shot.output.aovs.end(); }
+
+/// Places of the snapshot's instances and of the camera one frame before `frame`.
+PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, const SceneSnapshot& snapshot) {
+    const double time_s = frame.open_s - 1 / shot.timing().fps.value();
+    const std::vector<glm::dmat4> nodes = shot.node_transforms(time_s);
+    PreviousPlaces places;
+    for (const SnapshotInstance& instance : snapshot.instances) {
+        const GeometryData& geometry = shot.scene().geometries[instance.geometry];
+        const glm::dmat4& world_from_node = nodes[static_cast<std::size_t>(shot.bindings().seeds[instance.id].node)];
+        places.world_from_geometry.push_back(glm::scale(glm::translate(world_from_node, geometry.centre), glm::dvec3(geometry.scale)));
+    }
+    places.camera = make_camera_keys(shot, time_s, time_s, snapshot.render_origin).front();
+    return places;
+}
+
 class FrameSnapshots {
 public:
     FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
@@ -165,6 +182,8 @@ public:
 
     std::vector<SceneSnapshot> make() {
         for (const Part& part : split(shot_, frame_)) add(part, 0);
+        if (wants_motion(shot_.shot()))
+            for (SceneSnapshot& snapshot : snapshots_) snapshot.previous = places_before(shot_, frame_, snapshot);
         return std::move(snapshots_);
     }
 

@@ -47,6 +47,12 @@ struct EnvironmentSnapshot {
     bool visible = true;
 };
 
+/// Where things were one frame earlier, at that frame's shutter opening: what the motion layer compares with.
+struct PreviousPlaces {
+    std::vector<glm::dmat4> world_from_geometry;   ///< [instance], absolute
+    kernels::CameraKey camera{};                   ///< relative to the render origin of the snapshot that holds it
+};
+
 /// What any device needs of one frame, or of one part of its shutter, and nothing else: float, relative to the render
 /// origin.
 struct SceneSnapshot {
@@ -61,6 +67,7 @@ struct SceneSnapshot {
     std::vector<LightKeys> lights;
     std::vector<kernels::Light> light_keys;
     EnvironmentSnapshot environment;
+    std::optional<PreviousPlaces> previous;    ///< only where the shot asks for the motion layer
     kernels::Settings settings;
     std::uint64_t geometry_key = 0;            ///< equal keys: instances and motion are those of the previous frame
 };

@@ -117,5 +117,23 @@ TEST(Motion, MovingCameraSmearsAndMovingLightDims) {
     EXPECT_NEAR(dim.render(64).mean() / full, 0.5, 0.01);
 }
 
+TEST(Motion, LayerHoldsThePixelsMovedSinceTheFrameBefore) {
+    for (const bool fixed : {true, false}) {
+        SmallScene s;
+        s.camera({0, 0, 10}, {0, 0, 0}, 0.25);  // 32 pixels over 5 m: 6.4 pixels a metre
+        s.add_instance(s.add_mesh(unit_square()), glowing(), place({0.25, 0, 0}), fixed);
+        PreviousPlaces previous;
+        previous.world_from_geometry = {fixed ? place({0.25, 0, 0}) : place({0, 0, 0})};
+        previous.camera = s.snapshot.camera_keys[0];
+        if (fixed) previous.camera.position.y += 0.5f;  // the camera sank: the square rose in the image, so y went down
+        s.snapshot.previous = previous;
+        FilmLayers layers;
+        layers.motion = true;
+        const Image image = s.render(4, 1, 0, layers).image;
+        EXPECT_NEAR(image.at(17, 16, 4), fixed ? 0 : 0.25 * 6.4, 1e-4);
+        EXPECT_NEAR(image.at(17, 16, 5), fixed ? -0.5 * 6.4 : 0, 1e-4);
+    }
+}
+
 }  // namespace
 }  // namespace kadr::test

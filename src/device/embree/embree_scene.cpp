@@ -114,19 +114,12 @@ void EmbreeScene::load_environment(const Image& image) {
     }
     environment_marginal_.resize(image.height + 1);
     environment_conditional_.resize(static_cast<std::size_t>(image.height) * (image.width + 1));
-    kernels::build_environment_tables(environment_texels_.data(), image.width, image.height, environment_marginal_.data(), environment_conditional_.data());
+    environment_map_.average_luminance = kernels::build_environment_tables(environment_texels_.data(), image.width, image.height, environment_marginal_.data(), environment_conditional_.data());
     environment_map_.texels = environment_texels_.data();
     environment_map_.width = image.width;
     environment_map_.height = image.height;
     environment_map_.marginal = environment_marginal_.data();
     environment_map_.conditional = environment_conditional_.data();
-    double sum = 0, weight = 0;
-    for (int y = 0; y < image.height; ++y) {
-        const double sine = std::sin((y + 0.5) / image.height * 3.14159265358979);
-        for (int x = 0; x < image.width; ++x) sum += sine * kernels::luminance(environment_texels_[static_cast<std::size_t>(y) * image.width + x]);
-        weight += sine * image.width;
-    }
-    environment_map_.average_luminance = static_cast<float>(sum / weight);
 }
 
 void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
@@ -155,7 +148,26 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.keys = keys_.data();
     if (!same_geometry) set_emitters(snapshot);
     set_lights(snapshot);
+    set_previous(snapshot);
     set_requirements();
+}
+
+void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
+    view_.previous_matrices = nullptr;
+    if (!snapshot.previous) return;
+    previous_matrices_.resize(snapshot.instances.size());
+    for (std::size_t i = 0; i < previous_matrices_.size(); ++i) {
+        // Flattened vertices are relative to the render origin already, and have not moved.
+        const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->world_from_geometry[i];
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column)
+                previous_matrices_[i].m[row][column] = static_cast<float>(m[column][row] - (column == 3 && !motions_[i].identity ? snapshot.render_origin[row] : 0.0));
+    }
+    previous_camera_key_ = snapshot.previous->camera;
+    view_.previous_matrices = previous_matrices_.data();
+    view_.previous_camera = snapshot.camera;
+    view_.previous_camera.keys = &previous_camera_key_;
+    view_.previous_camera.key_count = 1;
 }
 
 std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) const {

@@ -52,6 +52,7 @@ private:
     EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
     void set_lights(const SceneSnapshot& snapshot);
     void set_emitters(const SceneSnapshot& snapshot);
+    void set_previous(const SceneSnapshot& snapshot);
     void set_requirements();
 
     RTCDevice device_;
@@ -70,6 +71,8 @@ private:
     std::vector<kernels::EmissiveTriangle> emissive_triangles_;
     std::vector<float> emissive_cdf_, instance_density_;
     std::vector<kernels::CameraKey> camera_keys_;
+    std::vector<kernels::Affine> previous_matrices_;
+    kernels::CameraKey previous_camera_key_{};
     std::vector<kernels::Vec3f> environment_texels_;
     std::vector<float> environment_marginal_, environment_conditional_;
     kernels::EnvironmentMap environment_map_{};

@@ -412,7 +412,28 @@ private:
             result_->normal[1][s] = lane(normal.y, i);
             result_->normal[2][s] = lane(normal.z, i);
             result_->depth[s] = lane(hit.distance, i) * view_cosine(path, i);
+            if (job_->scene->previous_matrices) {
+                const Vec2f moved = motion(static_cast<unsigned>(lane(hit.instance, i)), static_cast<unsigned>(lane(hit.primitive, i)), lane(hit.u, i), lane(hit.v, i));
+                result_->motion[0][s] = moved.x;
+                result_->motion[1][s] = moved.y;
+            }
         }
+    }
+
+    /// Pixels that a point of a surface moved since the previous frame, both taken at the shutter's opening.
+    Vec2f motion(unsigned instance, unsigned primitive, float u, float v) const {
+        const SceneView& scene = *job_->scene;
+        const Geometry& g = scene.geometries[scene.instances[instance].geometry];
+        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
+        const Vec3f p = barycentric(g.positions[index[0]], g.positions[index[1]], g.positions[index[2]], u, v);
+        const auto place = [&](const Affine& a) {
+            return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3], a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
+                         a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
+        };
+        const int width = scene.settings.width, height = scene.settings.height;
+        const Vec2f now = project<float>(scene.camera, width, height, place(transform_at(scene, instance, 0.0f)), 0.0f);
+        const Vec2f before = project<float>(scene.previous_camera, width, height, place(scene.previous_matrices[instance]), 0.0f);
+        return {now.x - before.x, now.y - before.y};
     }
 
     /// Cosine between the ray and the view axis, which makes a distance a depth.
