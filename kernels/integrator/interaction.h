@@ -84,6 +84,13 @@ SHARED_FN void set_vec(Vec4<F>& v, int i, Vec4f x) {
 
 SHARED_FN Vec3f barycentric(Vec3f a, Vec3f b, Vec3f c, float u, float v) { return a * (1.0f - u - v) + b * u + c * v; }
 
+/// UVs at a point of a triangle.
+SHARED_FN Vec2f uv_at(const Geometry& g, const unsigned* index, int set, float u, float v) {
+    const float w = 1.0f - u - v;
+    if (set == 0) return g.vertices[index[0]].uv * w + g.vertices[index[1]].uv * u + g.vertices[index[2]].uv * v;
+    return g.uv1 ? g.uv1[index[0]] * w + g.uv1[index[1]] * u + g.uv1[index[2]] * v : Vec2f{0, 0};
+}
+
 /// Vertex attributes that only textured surfaces need.
 template <class F>
 struct SurfaceMaps {
@@ -92,68 +99,69 @@ struct SurfaceMaps {
     Vec4<F> color;
 };
 
+/// Attributes that not every mesh has, of one lane.
+template <class F>
+SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* index, float u, float v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
+    const float w = 1.0f - u - v;
+    const unsigned a = index[0], b = index[1], c = index[2];
+    set_vec(maps.uv[1], i, g.uv1 ? g.uv1[a] * w + g.uv1[b] * u + g.uv1[c] * v : Vec2f{0, 0});
+    Vec4f tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
+    if (g.tangents) {
+        const Vec4f ta = g.tangents[a], tb = g.tangents[b], tc = g.tangents[c];
+        tangent = {ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v, ta.w};
+    }
+    if (g.colors) {
+        const Vec4f ca = g.colors[a], cb = g.colors[b], cc = g.colors[c];
+        color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v, ca.w * w + cb.w * u + cc.w * v};
+    }
+    set_vec(maps.tangent, i, tangent);
+    set_vec(maps.color, i, color);
+    set_lane(it.unlit, i, m.unlit);
+}
+
 /// Fetches lane by lane (every lane has its own mesh), then computes in all lanes at once.
 /// @tparam R    set of requirement:: bits
 /// @param wo    unit vector back along the ray
 template <class F, unsigned R>
 SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo, Mask<F> active) {
     constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0;
-    Vec3<F> p0{}, p1{}, p2{}, n0{}, n1{}, n2{};
-    Interaction<F> it{};
-    AffineLanes<F> world_from_object{};
-    SurfaceMaps<F> maps{};
-    Vec3<F> flat_lane{};  // x: 1 where the mesh has no normals
+    const float* rows[4][kLanes<F>];  // three vertices and the material of every lane
+    AffineLanes<F> world_from_object;
+    SurfaceMaps<F> maps;
+    Interaction<F> it;
     it.alpha = F(1.0f);
     it.unlit = Mask<F>(false);
-    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
-        const int i = __builtin_ctz(todo);
-        const Instance& instance = scene.instances[lane(hit.instance, i)];
+    const int some = __builtin_ctz(bits(active));  // inactive lanes shade what this one hit, and are masked out later
+    for (int i = 0; i < kLanes<F>; ++i) {
+        const int from = lane(active, i) ? i : some;
+        const unsigned instance_index = static_cast<unsigned>(lane(hit.instance, from));
+        const Instance& instance = scene.instances[instance_index];
         const Geometry& g = scene.geometries[instance.geometry];
-        const Material& m = scene.materials[instance.material];
-        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(lane(hit.primitive, i));
-        const unsigned a = index[0], b = index[1], c = index[2];
-        set_vec(p0, i, g.positions[a]);
-        set_vec(p1, i, g.positions[b]);
-        set_vec(p2, i, g.positions[c]);
-        if (g.normals) {
-            set_vec(n0, i, g.normals[a]);
-            set_vec(n1, i, g.normals[b]);
-            set_vec(n2, i, g.normals[c]);
-        } else {
-            set_lane(flat_lane.x, i, 1.0f);
-        }
-        set_vec(it.base_color, i, m.base_color);
-        set_vec(it.emission, i, m.emission);
-        set_lane(it.metallic, i, m.metallic);
-        set_lane(it.roughness, i, m.roughness);
+        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(lane(hit.primitive, from));
+        for (int corner = 0; corner < 3; ++corner) rows[corner][i] = &g.vertices[index[corner]].position.x;
+        rows[3][i] = &scene.materials[instance.material].base_color.x;
         if constexpr (kTransforms) {
-            const Affine at = transform_at(scene, static_cast<unsigned>(lane(hit.instance, i)), lane(time, i));
+            const Affine at = transform_at(scene, instance_index, lane(time, from));
             for (int r = 0; r < 3; ++r)
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
         }
-        if constexpr (kMaps) {
-            const float u = lane(hit.u, i), v = lane(hit.v, i), w = 1.0f - u - v;
-            for (int s = 0; s < 2; ++s)
-                if (g.uv[s]) set_vec(maps.uv[s], i, g.uv[s][a] * w + g.uv[s][b] * u + g.uv[s][c] * v);
-            if (g.tangents) {
-                const Vec4f ta = g.tangents[a], tb = g.tangents[b], tc = g.tangents[c];
-                set_vec(maps.tangent, i, Vec4f{ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v, ta.w});
-            }
-            Vec4f color{1, 1, 1, 1};
-            if (g.colors) {
-                const Vec4f ca = g.colors[a], cb = g.colors[b], cc = g.colors[c];
-                color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v, ca.w * w + cb.w * u + cc.w * v};
-            }
-            set_vec(maps.color, i, color);
-            set_lane(it.unlit, i, m.unlit);
-        }
+        if constexpr (kMaps) fetch_maps(scene.materials[instance.material], g, index, lane(hit.u, from), lane(hit.v, from), i, maps, it);
     }
+    F corner[3][8], material[8];
+    for (int c = 0; c < 3; ++c) load_rows(rows[c], corner[c]);
+    load_rows(rows[3], material);
+    const Vec3<F> p0{corner[0][0], corner[0][1], corner[0][2]}, p1{corner[1][0], corner[1][1], corner[1][2]}, p2{corner[2][0], corner[2][1], corner[2][2]};
+    const Vec3<F> n0{corner[0][3], corner[0][4], corner[0][5]}, n1{corner[1][3], corner[1][4], corner[1][5]}, n2{corner[2][3], corner[2][4], corner[2][5]};
+    it.base_color = {material[0], material[1], material[2]};
+    it.metallic = material[3];
+    it.emission = {material[4], material[5], material[6]};
+    it.roughness = material[7];
     // Geometric normal and hit point from barycentrics, never from origin + t * direction (see docs on precision).
     const Vec3<F> object_normal = normalize(cross(p1 - p0, p2 - p0));
     const F w = F(1.0f) - hit.u - hit.v;
     const Vec3<F> object_point = p0 * w + p1 * hit.u + p2 * hit.v;
     Vec3<F> smooth = n0 * w + n1 * hit.u + n2 * hit.v;
-    const Mask<F> is_flat = (flat_lane.x > F(0.0f)) | !(dot(smooth, smooth) > F(1e-20f));
+    const Mask<F> is_flat = !(dot(smooth, smooth) > F(1e-20f));
     smooth = select(is_flat, object_normal, smooth);
     if constexpr (kTransforms) {
         it.geometric_normal = normalize(world_from_object.normal(object_normal));
@@ -174,6 +182,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
     // The shading normal follows the geometric one to the viewer's side, also where mirrored transforms flipped one of them.
     it.shading_normal = it.shading_normal * copy_sign(F(1.0f), dot(it.shading_normal, it.geometric_normal));
     if constexpr (kMaps) {
+        maps.uv[0] = {corner[0][6] * w + corner[1][6] * hit.u + corner[2][6] * hit.v, corner[0][7] * w + corner[1][7] * hit.u + corner[2][7] * hit.v};
         if constexpr (kTransforms) {
             const Vec3<F> t = world_from_object.vector({maps.tangent.x, maps.tangent.y, maps.tangent.z});
             maps.tangent = {t.x, t.y, t.z, maps.tangent.w * world_from_object.handedness()};

@@ -149,61 +149,75 @@ struct ChosenLight {
     F total_weight;   ///< of all entries
 };
 
-/// A point on an emissive triangle, chosen in proportion to luminance * area; lane by lane.
+/// Index of the largest entry of a CDF that does not exceed u.
+SHARED_FN int find_in_cdf(const float* cdf, int count, float u) {
+    int low = 0, high = count - 1;
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+        if (cdf[middle] <= u) low = middle; else high = middle - 1;
+    }
+    return low;
+}
+
+/// Replaces what a moving or textured emitter has of its own at (b1, b2).
+SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& triangle, float time, float b1, float b2, Vec3f& point, Vec3f& normal, Vec3f& emission) {
+    const Instance& instance = scene.instances[triangle.instance];
+    const Geometry& g = scene.geometries[instance.geometry];
+    const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
+    const Affine at = transform_at(scene, triangle.instance, time);
+    Vec3f corners[3];
+    for (int c = 0; c < 3; ++c) {
+        const Vec3f q = g.vertices[index[c]].position;
+        corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3], at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
+                      at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
+    }
+    point = barycentric(corners[0], corners[1], corners[2], b1, b2);
+    normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const TextureSlot& slot = scene.materials[instance.material].emissive_texture;
+    if (slot.texture < 0) return;
+    const Vec4f t = sample_texture<float>(scene.textures, slot.texture, apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
+    emission = emission * Vec3f{t.x, t.y, t.z};
+}
+
+/// A point on an emissive triangle, chosen in proportion to luminance * area.
 template <class F>
 SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F time, F choice, Vec2<F> u, Mask<F> active) {
     const LightSet& lights = scene.lights;
-    Vec3<F> point{}, normal{}, emission{};
-    F density(0.0f);
-    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
-        const int i = __builtin_ctz(todo);
-        int low = 0, high = lights.triangle_count - 1;  // largest entry with cdf <= choice
-        const float c = lane(choice, i);
-        while (low < high) {
-            const int middle = (low + high + 1) / 2;
-            if (lights.triangle_cdf[middle] <= c) low = middle; else high = middle - 1;
-        }
-        const EmissiveTriangle triangle = lights.triangles[low];
-        const Instance& instance = scene.instances[triangle.instance];
-        const Geometry& g = scene.geometries[instance.geometry];
-        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
-        // Uniform in the triangle.  Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
-        float b0 = lane(u.x, i) * 0.5f, b1 = lane(u.y, i) * 0.5f;
-        const float offset = b1 - b0;
-        if (offset > 0) b1 += offset; else b0 -= offset;
-        Vec3f a = g.positions[index[0]], b = g.positions[index[1]], d = g.positions[index[2]];
-        if (!scene.motions[triangle.instance].identity) {
-            const Affine at = transform_at(scene, triangle.instance, lane(time, i));
-            Vec3f* corners[3] = {&a, &b, &d};
-            for (Vec3f* corner : corners) {
-                const Vec3f q = *corner;
-                *corner = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3], at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
-                           at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
-            }
-        }
-        set_vec(point, i, barycentric(a, b, d, b0, b1));
-        set_vec(normal, i, cross(b - a, d - a));
-        const Material& m = scene.materials[instance.material];
-        Vec3f radiance = m.emission;
-        if (m.emissive_texture.texture >= 0) {
-            Vec2f uv[2] = {{0, 0}, {0, 0}};
-            for (int s = 0; s < 2; ++s)
-                if (g.uv[s]) uv[s] = g.uv[s][index[0]] * (1 - b0 - b1) + g.uv[s][index[1]] * b0 + g.uv[s][index[2]] * b1;
-            const Vec4f t = sample_texture<float>(scene.textures, m.emissive_texture.texture, apply_transform(m.emissive_texture, uv[0], uv[1]), true);
-            radiance = radiance * Vec3f{t.x, t.y, t.z};
-        }
-        set_vec(emission, i, radiance);
-        set_lane(density, i, lights.instance_density[triangle.instance]);
+    const EmissiveTriangle* chosen[kLanes<F>];
+    const float* rows[2][kLanes<F>];
+    unsigned varies = 0;
+    for (int i = 0; i < kLanes<F>; ++i) {
+        chosen[i] = lights.triangles + find_in_cdf(lights.triangle_cdf, lights.triangle_count, lane(choice, i));
+        rows[0][i] = &chosen[i]->corner.x;
+        rows[1][i] = rows[0][i] + 8;
+        varies |= chosen[i]->varies << i;
     }
+    F first[8], second[8];
+    load_rows(rows[0], first);
+    load_rows(rows[1], second);
+    // Uniform in the triangle.  Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+    const F offset = (u.y - u.x) * F(0.5f);
+    const Mask<F> upper = offset > F(0.0f);
+    const F b1 = select(upper, u.x * F(0.5f), u.x * F(0.5f) - offset), b2 = select(upper, u.y * F(0.5f) + offset, u.y * F(0.5f));
+    const Vec3<F> edge1{first[3], first[4], first[5]}, edge2{first[6], first[7], second[0]};
+    Vec3<F> point = Vec3<F>{first[0], first[1], first[2]} + edge1 * b1 + edge2 * b2;
+    Vec3<F> normal = cross(edge1, edge2);
     LightSample<F> s;
+    s.radiance = {second[1], second[2], second[3]};
+    for (unsigned todo = varies & bits(active); todo; todo &= todo - 1) {
+        const int i = __builtin_ctz(todo);
+        Vec3f at{}, facing{}, emission = chosen[i]->emission;
+        look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i), at, facing, emission);
+        set_vec(point, i, at);
+        set_vec(normal, i, facing);
+        set_vec(s.radiance, i, emission);
+    }
     const Vec3<F> d = point - p;
     const F distance2 = max(dot(d, d), F(1e-30f));
-    const F distance = sqrt(distance2);
-    s.direction = d * (F(1.0f) / distance);
-    s.distance = distance;
-    s.radiance = emission;
+    s.distance = sqrt(distance2);
+    s.direction = d * (F(1.0f) / s.distance);
     const F cosine = abs(dot(normal, s.direction)) / max(length(normal), F(1e-30f));
-    s.pdf = density * distance2 / max(cosine, F(1e-7f));
+    s.pdf = second[4] * distance2 / max(cosine, F(1e-7f));
     return s;
 }
 

@@ -203,6 +203,34 @@ template <class F> struct Memory {
     SHARED_FN static void store(float* p, F x) { *reinterpret_cast<F*>(p) = x; }
 };
 
+/// Eight values from each of kLanes<F> places: out[k] of lane i is rows[i][k].
+template <class F>
+SHARED_FN void load_rows(const float* const* rows, F* out) {
+#if defined(__AVX__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+    if constexpr (kLanes<F> == 8) {  // eight loads and an 8x8 transposition
+        __m256 r[8], t[8];
+        for (int i = 0; i < 8; ++i) r[i] = _mm256_loadu_ps(rows[i]);
+        for (int i = 0; i < 8; i += 2) {
+            t[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+            t[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+        }
+        for (int i = 0; i < 8; i += 4) {
+            r[i] = _mm256_shuffle_ps(t[i], t[i + 2], 0x44);
+            r[i + 1] = _mm256_shuffle_ps(t[i], t[i + 2], 0xee);
+            r[i + 2] = _mm256_shuffle_ps(t[i + 1], t[i + 3], 0x44);
+            r[i + 3] = _mm256_shuffle_ps(t[i + 1], t[i + 3], 0xee);
+        }
+        for (int i = 0; i < 4; ++i) {
+            out[i].v = (typename F::V)_mm256_permute2f128_ps(r[i], r[i + 4], 0x20);
+            out[i + 4].v = (typename F::V)_mm256_permute2f128_ps(r[i], r[i + 4], 0x31);
+        }
+        return;
+    }
+#endif
+    for (int k = 0; k < 8; ++k)
+        for (int i = 0; i < kLanes<F>; ++i) set_lane(out[k], i, rows[i][k]);
+}
+
 // ------------------------------------------------------------------------------------------------------ functions
 
 SHARED_FN float min(float a, float b) { return a < b ? a : b; }  // b where either is NaN, as the vector instruction

@@ -34,11 +34,12 @@ enum class AlphaMode : unsigned char { opaque, mask, blend };
 
 /// glTF metallic-roughness material.
 struct Material {
+    // The first eight floats are fetched together (see load_rows in math/wide.h): keep their order.
     Vec3f base_color{1, 1, 1};   ///< linear
-    float alpha = 1;
-    Vec3f emission{0, 0, 0};     ///< radiance: emissiveFactor * emissiveStrength
     float metallic = 1;
+    Vec3f emission{0, 0, 0};     ///< radiance: emissiveFactor * emissiveStrength
     float roughness = 1;         ///< perceptual; alpha_ggx = roughness^2
+    float alpha = 1;
     float alpha_cutoff = 0.5f;
     float normal_scale = 1;
     float occlusion_strength = 1;  ///< read, unused: both integrators trace what baked occlusion imitates
@@ -48,13 +49,21 @@ struct Material {
     TextureSlot base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture, occlusion_texture;
 };
 
-/// A triangle mesh in its own coordinates (normalised to order 1 by the loader). Null pointers: attribute absent.
+/// What every shaded point needs of a vertex, in one half of a cache line.
+struct Vertex {
+    Vec3f position;
+    Vec3f normal;                ///< unit; zero where the mesh is flat
+    Vec2f uv;                    ///< of set 0; zero without one
+};
+static_assert(sizeof(Vertex) == 32, "fetched as eight floats");
+
+/// A triangle mesh in its own coordinates (normalised to order 1 by the loader), or, flattened, relative to the render
+/// origin. Null pointers: attribute absent.
 struct Geometry {
-    const Vec3f* positions;      ///< [vertex_count]
+    const Vertex* vertices;      ///< [vertex_count]
     const unsigned* indices;     ///< [3 * triangle_count]
-    const Vec3f* normals;        ///< [vertex_count] unit; null: flat
     const Vec4f* tangents;       ///< [vertex_count] xyz unit, w = +-1 handedness; null unless a normal texture is used
-    const Vec2f* uv[2];          ///< [vertex_count]
+    const Vec2f* uv1;            ///< [vertex_count] of set 1
     const Vec4f* colors;         ///< [vertex_count] linear RGBA, multiplies the base colour
     unsigned vertex_count, triangle_count;
 };

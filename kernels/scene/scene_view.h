@@ -31,10 +31,17 @@ struct InstanceMotion {
     bool identity;    ///< flattened: coordinates are relative to the render origin already
 };
 
-/// A triangle that emits. Chosen in proportion to luminance * world area.
+/// A triangle that emits, at the shutter's opening. Chosen in proportion to luminance * world area.
 struct EmissiveTriangle {
+    // Sixteen floats, fetched together (see load_rows): keep their order.
+    Vec3f corner;                 ///< relative to the render origin
+    Vec3f edge1, edge2;           ///< to the second and third corner
+    Vec3f emission;               ///< radiance; of a textured emitter the factor
+    float density;                ///< pdf per area of a point on it
     unsigned instance, primitive;
+    unsigned varies;              ///< 1: textured or moving, so that a point of it has to be looked up
 };
+static_assert(sizeof(EmissiveTriangle) == 64, "fetched as sixteen floats");
 
 /// Everything that emits, as next-event estimation sees it: entries that compete for the one shadow ray of a hit.
 struct LightSet {

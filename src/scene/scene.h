@@ -29,7 +29,6 @@ struct GeometryData {
     std::vector<kernels::Vec4f> colors;
     glm::dvec3 centre{0};
     double scale = 1;
-    kernels::Geometry view() const;
 };
 
 struct TextureData {

@@ -225,21 +225,6 @@ void append_tree(Scene& scene, const Scene& file, const Offsets& offsets, const 
 
 }  // namespace
 
-kernels::Geometry GeometryData::view() const {
-    const auto data = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
-    kernels::Geometry g{};
-    g.positions = data(positions);
-    g.indices = data(indices);
-    g.normals = data(normals);
-    g.tangents = data(tangents);
-    g.uv[0] = data(uv[0]);
-    g.uv[1] = data(uv[1]);
-    g.colors = data(colors);
-    g.vertex_count = static_cast<unsigned>(positions.size());
-    g.triangle_count = static_cast<unsigned>(indices.size() / 3);
-    return g;
-}
-
 kernels::Texture TextureData::view() const { return {texels.data(), width, height, format, wrap_s, wrap_t, nearest}; }
 
 Scene load_scene(const std::vector<SceneFileRequest>& requests, const LoadOptions& options) {

@@ -1,5 +1,6 @@
 #include "device/embree/alpha_filter.h"
 
+#include "kernels/integrator/interaction.h"
 #include "kernels/texture/texture.h"
 
 namespace kadr {
@@ -14,10 +15,7 @@ float coverage(const GeometryUser& user, unsigned primitive, float u, float v) {
     float alpha = material.alpha;
     if (geometry.colors) alpha *= geometry.colors[index[0]].w * w + geometry.colors[index[1]].w * u + geometry.colors[index[2]].w * v;
     if (material.base_color_texture.texture < 0) return alpha;
-    kernels::Vec2f uv[2] = {{0, 0}, {0, 0}};
-    for (int s = 0; s < 2; ++s)
-        if (geometry.uv[s]) uv[s] = geometry.uv[s][index[0]] * w + geometry.uv[s][index[1]] * u + geometry.uv[s][index[2]] * v;
-    const kernels::Vec2f at = kernels::apply_transform(material.base_color_texture, uv[0], uv[1]);
+    const kernels::Vec2f at = kernels::apply_transform(material.base_color_texture, kernels::uv_at(geometry, index, 0, u, v), kernels::uv_at(geometry, index, 1, u, v));
     return alpha * kernels::sample_texture<float>(user.view->textures, material.base_color_texture.texture, at, true).w;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -55,22 +54,27 @@ bool has_maps(const kernels::Material& m) {
 
 }  // namespace
 
-struct EmbreeScene::BakedGeometry {
-    std::vector<kernels::Vec3f> positions, normals;
-    std::vector<kernels::Vec4f> tangents;
-    std::vector<unsigned> indices;
+struct EmbreeScene::PackedGeometry {
+    std::vector<kernels::Vertex> vertices;
+    std::vector<kernels::Vec4f> tangents;   ///< empty: the source's
+    std::vector<unsigned> indices;          ///< empty: the source's
 
-    /// Copies a geometry to coordinates relative to `origin`.
-    void bake(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin) {
+    /// A mesh in its own coordinates.
+    explicit PackedGeometry(const GeometryData& source) {
+        allocate(source);
+        for (std::size_t i = 0; i < source.positions.size(); ++i) vertices[i].position = source.positions[i];
+        for (std::size_t i = 0; i < source.normals.size(); ++i) vertices[i].normal = source.normals[i];
+    }
+
+    /// A mesh relative to `origin`.
+    PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin) {
         const glm::dmat3 linear(world_from_geometry);
         const glm::dvec3 shift = glm::dvec3(world_from_geometry[3]) - origin;
         const bool mirrored = glm::determinant(linear) < 0;
         const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
-        // Embree reads sixteen bytes a vertex: one vertex more than there are.
-        positions.resize(source.positions.size() + 1);
-        for (std::size_t i = 0; i < source.positions.size(); ++i) positions[i] = to_float(linear * to_double(source.positions[i]) + shift);
-        normals.resize(source.normals.size());
-        for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
+        allocate(source);
+        for (std::size_t i = 0; i < source.positions.size(); ++i) vertices[i].position = to_float(linear * to_double(source.positions[i]) + shift);
+        for (std::size_t i = 0; i < source.normals.size(); ++i) vertices[i].normal = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
         tangents.resize(source.tangents.size());
         for (std::size_t i = 0; i < tangents.size(); ++i) {
             const kernels::Vec4f t = source.tangents[i];
@@ -84,18 +88,28 @@ struct EmbreeScene::BakedGeometry {
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
     }
 
-    kernels::Geometry view(const kernels::Geometry& source) const {
-        kernels::Geometry g = source;
-        g.positions = positions.data();
-        if (!normals.empty()) g.normals = normals.data();
-        if (!tangents.empty()) g.tangents = tangents.data();
-        if (!indices.empty()) g.indices = indices.data();
+    kernels::Geometry view(const GeometryData& source) const {
+        kernels::Geometry g{};
+        g.vertices = vertices.data();
+        g.vertex_count = static_cast<unsigned>(vertices.size());
+        g.indices = indices.empty() ? source.indices.data() : indices.data();
+        g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
+        if (!source.tangents.empty()) g.tangents = tangents.empty() ? source.tangents.data() : tangents.data();
+        if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
+        if (!source.colors.empty()) g.colors = source.colors.data();
         return g;
+    }
+
+private:
+    void allocate(const GeometryData& source) {
+        vertices.assign(source.positions.size(), {{0, 0, 0}, {0, 0, 0}, {0, 0}});
+        for (std::size_t i = 0; i < source.uv[0].size(); ++i) vertices[i].uv = source.uv[0][i];
     }
 };
 
 EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment) : device_(device), scene_(scene) {
-    for (const GeometryData& g : scene.geometries) geometries_.push_back(g.view());
+    geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
+    packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
     view_.materials = scene.materials.data();
     view_.textures = textures_.data();
@@ -193,6 +207,7 @@ EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geomet
         rtcSetGeometryOccludedFilterFunction(handle.get(), alpha_filter);
     }
     rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices, 0, 12, geometry.triangle_count);
+    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.vertices, 0, sizeof(kernels::Vertex), geometry.vertex_count);
     return handle;
 }
 
@@ -206,18 +221,16 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
     tbb::parallel_for(std::size_t{0}, flattened.size(), [&](std::size_t i) {
         if (!flattened[i] || snapshot.instances[i].mask == 0) return;
         const SnapshotInstance& instance = snapshot.instances[i];
-        baked_[i] = std::make_unique<BakedGeometry>();
-        baked_[i]->bake(scene_.geometries[instance.geometry], instance.world_from_geometry, snapshot.render_origin);
+        baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], instance.world_from_geometry, snapshot.render_origin);
     });
     for (std::size_t i = 0; i < baked_.size(); ++i) {
         if (!baked_[i]) continue;
         const SnapshotInstance& instance = snapshot.instances[i];
         const unsigned index = static_cast<unsigned>(geometries_.size());
-        geometries_.push_back(baked_[i]->view(geometries_[instance.geometry]));
+        geometries_.push_back(baked_[i]->view(scene_.geometries[instance.geometry]));
         const kernels::Geometry& geometry = geometries_.back();
         if (geometry.triangle_count == 0) continue;
         EmbreeGeometryHandle handle = make_triangles(geometry, instance.material);
-        rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions, 0, 12, geometry.vertex_count);
         flat_users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, index, instance.material, cull_backfaces_}));
         rtcSetGeometryUserData(handle.get(), flat_users_.back().get());
         rtcCommitGeometry(handle.get());
@@ -232,12 +245,13 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
     EmbreeSceneHandle& handle = mesh_scenes_[{geometry_index, material}];
     if (handle) return handle.get();
     handle.reset(rtcNewScene(device_));
+    if (!packed_[geometry_index]) {
+        packed_[geometry_index] = std::make_unique<PackedGeometry>(scene_.geometries[geometry_index]);
+        geometries_[geometry_index] = packed_[geometry_index]->view(scene_.geometries[geometry_index]);
+    }
     const kernels::Geometry& geometry = geometries_[geometry_index];
     if (geometry.triangle_count > 0) {
         EmbreeGeometryHandle triangles = make_triangles(geometry, material);
-        void* vertices = rtcSetNewGeometryBuffer(triangles.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, geometry.vertex_count);
-        check(device_, "allocate a mesh");
-        std::memcpy(vertices, geometry.positions, sizeof(kernels::Vec3f) * geometry.vertex_count);
         users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, geometry_index, material, cull_backfaces_}));
         rtcSetGeometryUserData(triangles.get(), users_.back().get());
         rtcCommitGeometry(triangles.get());
@@ -287,7 +301,7 @@ void EmbreeScene::add_instance(const SceneSnapshot& snapshot, std::size_t index)
         motion.first = static_cast<unsigned>(keys_.size());
         keys_.insert(keys_.end(), keys.keys.begin(), keys.keys.end());
     }
-    if (source.mask == 0 || geometries_[source.geometry].triangle_count == 0) return;
+    if (source.mask == 0 || scene_.geometries[source.geometry].indices.empty()) return;
     EmbreeGeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(handle.get(), mesh_scene(source.geometry, source.material));
     rtcSetGeometryTimeStepCount(handle.get(), motion.count);
@@ -325,16 +339,17 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
         const kernels::Geometry& geometry = geometries_[instances_[i].geometry];
         const kernels::Affine at = kernels::transform_at(view_, static_cast<unsigned>(i), 0.0f);
         const auto place = [&](unsigned vertex) {
-            const glm::dvec3 p = to_double(geometry.positions[vertex]);
+            const glm::dvec3 p = to_double(geometry.vertices[vertex].position);
             glm::dvec3 r;
             for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
             return r;
         };
+        const bool varies = texture >= 0 || motions_[i].kind != kernels::InstanceMotion::Kind::still;
         for (unsigned t = 0; t < geometry.triangle_count; ++t) {
             const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]), c = place(geometry.indices[3 * t + 2]);
             const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
             if (!(power > 0)) continue;
-            emissive_triangles_.push_back({static_cast<unsigned>(i), t});
+            emissive_triangles_.push_back({to_float(a), to_float(b - a), to_float(c - a), material.emission, 0, static_cast<unsigned>(i), t, varies ? 1u : 0u});
             total += power;
             cumulative.push_back(total);
             places.emplace_back((a + b + c) / 3.0, power);
@@ -347,6 +362,7 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
     if (total > 0) {
         for (double c : cumulative) emissive_cdf_.push_back(static_cast<float>(c / total));
         for (float& d : instance_density_) d = static_cast<float>(d / total);
+        for (kernels::EmissiveTriangle& t : emissive_triangles_) t.density = instance_density_[t.instance];
         centre /= total;
         double radius_squared = 1e-12;
         for (const auto& [p, power] : places) radius_squared += power / total * glm::dot(p - centre, p - centre);

@@ -41,7 +41,7 @@ public:
     std::uint64_t moving_count() const { return moving_count_; }
 
 private:
-    struct BakedGeometry;   ///< world-space copy of a geometry, for flattening
+    struct PackedGeometry;   ///< vertices as the kernels fetch them, in mesh coordinates or flattened
 
     void load_environment(const Image& image);
     std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
@@ -78,7 +78,8 @@ private:
     kernels::EnvironmentMap environment_map_{};
     kernels::SceneView view_{};
 
-    std::vector<std::unique_ptr<BakedGeometry>> baked_;
+    std::vector<std::unique_ptr<PackedGeometry>> packed_;   ///< [geometry] in mesh coordinates; null until an instance needs it
+    std::vector<std::unique_ptr<PackedGeometry>> baked_;    ///< [instance] flattened
     std::vector<std::unique_ptr<GeometryUser>> users_;                      ///< of mesh scenes
     std::vector<std::unique_ptr<GeometryUser>> flat_users_;
     std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_; ///< by geometry and material

@@ -425,7 +425,7 @@ private:
         const SceneView& scene = *job_->scene;
         const Geometry& g = scene.geometries[scene.instances[instance].geometry];
         const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
-        const Vec3f p = barycentric(g.positions[index[0]], g.positions[index[1]], g.positions[index[2]], u, v);
+        const Vec3f p = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position, g.vertices[index[2]].position, u, v);
         const auto place = [&](const Affine& a) {
             return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3], a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
                          a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
