@@ -48,10 +48,11 @@ ViewSpec preview_view(const LoadedShot& shot, FrameRenderer& renderer) {
 
 FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events) {
     const Stopwatch watch;
+    // The device first: it starts its threads, which would wait for the image module while that is being opened.
+    const DeviceChoice choice = make_device(options.render.device);
     open_image_io_in_background();
     const LoadedShot loaded(preview_shot(options.render));
     for (const Diagnostic& warning : loaded.warnings()) events.warning(warning);
-    const DeviceChoice choice = make_device(options.render.device);
     load_device(*choice.device, loaded);
     FrameRenderer renderer(*choice.device);
 

@@ -4,8 +4,9 @@
   tools/bench/startup.py --kadr BUILD/bin/kadr [--instances] [--output report.json]
 
 check      seconds of `kadr check shots/turntable.yaml`, without a video (so without ffmpeg's probe)
-first ray  seconds from start to the first traced ray on the peers' spheres: the wall time of a 1 × 1 frame with one sample,
-           an upper bound, because it holds writing the image and the end of the process too
+first ray  seconds from start to the first traced ray on the peers' spheres: of a 1 × 1 frame with one sample, what kadr itself
+           reports for loading and for building the scene, and the wall time of the whole process, an upper bound, because it
+           holds opening the image module, writing the image and the end of the process too
 preview    seconds of `kadr preview` of a 100 k-triangle scene at 640×360
 memory     peak resident memory of spheres at 640×360 with 4 samples
 instances  (with --instances) a scene of 100 instances of a 0.5 M-triangle mesh, made here: CPU seconds and memory at 640×360
