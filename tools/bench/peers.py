@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Kadr against Cycles and Mitsuba on the same glTF scenes: speed in one interleaved run, and error against references.
 
-  tools/bench/peers.py speed --kadr BUILD/bin/kadr --python VENV/bin/python
-  tools/bench/peers.py error --kadr BUILD/bin/kadr --python VENV/bin/python
+  tools/bench/peers.py speed --kadr BUILD/src/cli/kadr --python VENV/bin/python
+  tools/bench/peers.py error --kadr BUILD/src/cli/kadr --python VENV/bin/python
 
 speed  640×360, 4 bounces, box filter, constant background. Rounds run kadr, Cycles and Mitsuba in turn, because a machine's
        speed drifts. Million pixel-samples per CPU-second of tracing; for kadr that is the difference of two whole
@@ -171,7 +171,7 @@ def machine():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mode", choices=("speed", "error"))
-    parser.add_argument("--kadr", type=pathlib.Path, default=ROOT / "build" / "release" / "bin" / "kadr")
+    parser.add_argument("--kadr", type=pathlib.Path, default=ROOT / "build" / "release" / "src" / "cli" / "kadr")
     parser.add_argument("--python", default="", help="interpreter with bpy, mitsuba, numpy and OpenImageIO")
     parser.add_argument("--peers", type=pathlib.Path, default=pathlib.Path(os.environ.get("KADR_PEERS", ROOT.parent / "shared" / "peers")))
     parser.add_argument("--renderers", default="kadr,cycles,mitsuba", help="comma-separated; kadr alone needs no --python for `speed`")
