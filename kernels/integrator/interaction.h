@@ -119,6 +119,21 @@ SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* 
     set_lane(it.unlit, i, m.unlit);
 }
 
+/// The shading normal, bent as little as keeps the mirror direction above the surface.
+///
+/// Strongly tilted normals (of normal maps, and of smooth shading on coarse meshes) mirror the viewer into the surface, where
+/// nothing is seen: black rims on metals. All vectors are unit and on the viewer's side.
+/// Source: Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, A.3.
+template <class F>
+SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> wo) {
+    const Vec3<F> mirrored = shading * (F(2.0f) * dot(shading, wo)) - wo;
+    const F height = dot(mirrored, geometric);
+    // At grazing angles even the flat mirror is low: never ask for more than it has.
+    const F least = min(F(0.02f), dot(geometric, wo) * F(0.9f));
+    const Vec3<F> bent = normalize(normalize(mirrored + geometric * (least - height)) + wo);
+    return select(height < least, bent, shading);
+}
+
 /// Fetches lane by lane (every lane has its own mesh), then computes in all lanes at once.
 /// @tparam R    set of requirement:: bits
 /// @param wo    unit vector back along the ray

@@ -297,7 +297,10 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     const Settings& settings = scene.settings;
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
-    const Interaction<F> it = make_interaction<F, R>(scene, hit, path.time, wo, active);
+    Interaction<F> it = make_interaction<F, R>(scene, hit, path.time, wo, active);
+    // By the metallic part: diffuse light is right by the tilted normal, and outweighs a dielectric's reflection.
+    const Vec3<F> reflecting = reflecting_normal(it.geometric_normal, it.shading_normal, wo);
+    it.shading_normal = normalize(it.shading_normal + (reflecting - it.shading_normal) * it.metallic);
     VertexResult<F> result;
 
     F emission_weight(1.0f);
