@@ -47,12 +47,18 @@ std::vector<std::string> split(std::string_view path) {
     return parts;
 }
 
-/// Whether a node's name is the last part and the others are names above it, in this order.
-bool matches(const Scene& scene, int node, const std::vector<std::string>& parts) {
-    if (node_at(scene, node).name != parts.back()) return false;
+/// A node's name; "#" and its index in its file where it has none.
+std::string label(const Scene& scene, const SceneFile& file, int node) {
+    const std::string& name = node_at(scene, node).name;
+    return name.empty() ? fmt::format("#{}", node - file.first_node) : name;
+}
+
+/// Whether a node's label is the last part and the others are labels above it, in this order.
+bool matches(const Scene& scene, const SceneFile& file, int node, const std::vector<std::string>& parts) {
+    if (label(scene, file, node) != parts.back()) return false;
     std::size_t left = parts.size() - 1;
     for (int above = node_at(scene, node).parent; left > 0 && above >= 0; above = node_at(scene, above).parent)
-        if (node_at(scene, above).name == parts[left - 1]) --left;
+        if (label(scene, file, above) == parts[left - 1]) --left;
     return left == 0;
 }
 
@@ -60,7 +66,7 @@ std::vector<int> nodes_named(const Scene& scene, const SceneFile& file, const st
     std::vector<int> found;
     for (const std::vector<std::string>& parts : {std::vector<std::string>{path}, split(path)}) {  // a name may hold a '/'
         for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
-            if (matches(scene, node, parts)) found.push_back(node);
+            if (matches(scene, file, node, parts)) found.push_back(node);
         if (!found.empty()) break;
     }
     return found;
@@ -102,12 +108,10 @@ std::vector<int> cameras_named(const Scene& scene, const SceneFile& file, std::s
 }  // namespace
 
 std::string node_path(const Scene& scene, int file, int node) {
+    const SceneFile& source = scene.files[static_cast<std::size_t>(file)];
     std::string path;
-    for (; node >= 0; node = node_at(scene, node).parent) {
-        const std::string& name = node_at(scene, node).name;
-        path = "/" + (name.empty() ? fmt::format("#{}", node - scene.files[static_cast<std::size_t>(file)].first_node) : name) + path;
-    }
-    return scene.files[static_cast<std::size_t>(file)].id + path;
+    for (; node >= 0; node = node_at(scene, node).parent) path = "/" + label(scene, source, node) + path;
+    return source.id + path;
 }
 
 ResolvedReference resolve(const Scene& scene, const NodeReference& reference) {

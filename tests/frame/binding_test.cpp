@@ -64,6 +64,16 @@ TEST(Binding, ReportsAllProblemsAtOnce) {
               "  there are no nodes");
 }
 
+TEST(Binding, FindsANamelessNodeByItsNumberAsMessagesCallIt) {
+    Stage stage;
+    stage.add_node("Box");
+    const int first = stage.add_node("", -1, false), second = stage.add_node("", -1, false);
+    stage.scene.cameras.push_back({});
+    stage.node(first).camera = stage.node(second).camera = 0;
+    stage.shot.camera.gltf = reference("stage/#2");
+    EXPECT_NO_THROW(stage.bind());
+}
+
 TEST(Binding, WantsACameraForTheCamera) {
     Stage stage;
     stage.add_node("Box");
