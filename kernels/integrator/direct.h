@@ -15,7 +15,7 @@ inline constexpr unsigned kMaxLayers = 64;
 template <class F>
 struct DirectResult {
     Vec3<F> emitted;
-    PathState<F> next;      ///< straight on, behind a surface of partial coverage
+    PathState<F> next;  ///< straight on, behind a surface of partial coverage
     Mask<F> alive;
     Vec3<F> albedo, normal;
 };
@@ -23,7 +23,8 @@ struct DirectResult {
 /// One hit under every light.
 /// @param shadow  called with a ShadowRay<F> for every light that can reach some lane
 template <class F, unsigned R, class Shadow>
-SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, Mask<F> active, const Shadow& shadow) {
+SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit,
+                                       Mask<F> active, const Shadow& shadow) {
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
     const Interaction<F> it = make_interaction<F, R>(scene, hit, path.time, wo, active);
@@ -35,15 +36,18 @@ SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F
     const Mask<F> lit = active & !it.unlit;
     for (int i = 0; i < scene.lights.count; ++i) {
         const Light* keys = scene.lights.keys + scene.lights.first[i];
-        const LightSample<F> light = sample_light(keys, scene.lights.key_count[i], path.time, it.origin, Vec2<F>{F(0.5f), F(0.5f)});
+        const LightSample<F> light =
+            sample_light(keys, scene.lights.key_count[i], path.time, it.origin, Vec2<F>{F(0.5f), F(0.5f)});
         const F cosine = max(dot(it.shading_normal, light.direction), F(0.0f));
-        const Vec3<F> f = analytic_brdf(it.base_color, it.metallic, it.roughness, it.shading_normal, wo, light.direction);
+        const Vec3<F> f =
+            analytic_brdf(it.base_color, it.metallic, it.roughness, it.shading_normal, wo, light.direction);
         ShadowRay<F> ray;
         ray.origin = it.origin;
         ray.direction = light.direction;
         ray.distance = light.distance * F(1.0f - 1e-4f);
         ray.radiance = covered * f * light.radiance * cosine;
-        ray.active = lit & (max_component(ray.radiance) > F(0.0f)) & (dot(light.direction, it.geometric_normal) > F(0.0f));
+        ray.active =
+            lit & (max_component(ray.radiance) > F(0.0f)) & (dot(light.direction, it.geometric_normal) > F(0.0f));
         if (any(ray.active)) shadow(ray);
     }
     result.alive = active & (it.alpha < F(1.0f)) & (path.bounces < UInt<F>(kMaxLayers));

@@ -18,12 +18,12 @@ struct Hit {
 /// A shaded point. Normals are unit, in world space and turned to the viewer.
 template <class F>
 struct Interaction {
-    Vec3<F> position;          ///< on the surface
-    Vec3<F> origin;            ///< where rays leave from: off the surface, on the viewer's side
+    Vec3<F> position;  ///< on the surface
+    Vec3<F> origin;    ///< where rays leave from: off the surface, on the viewer's side
     Vec3<F> geometric_normal, shading_normal;
     Vec3<F> base_color, emission;
     F metallic, roughness;
-    F alpha;                   ///< coverage of a `blend` material; 1 elsewhere
+    F alpha;  ///< coverage of a `blend` material; 1 elsewhere
     Mask<F> unlit;
 };
 
@@ -45,7 +45,8 @@ template <class F>
 struct AffineLanes {
     F m[3][4];
     SHARED_FN Vec3<F> point(Vec3<F> p) const {
-        return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3], m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+        return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+                m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
                 m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
     }
     SHARED_FN Vec3<F> vector(Vec3<F> p) const {
@@ -55,8 +56,8 @@ struct AffineLanes {
     SHARED_FN Vec3<F> row(int i) const { return {m[i][0], m[i][1], m[i][2]}; }
     /// 1, or -1 where the matrix mirrors.
     SHARED_FN F handedness() const { return copy_sign(F(1.0f), dot(cross(row(0), row(1)), row(2))); }
-    /// Unnormalised. By the cofactors, which are the inverse transpose times the determinant: right for every matrix that
-    /// has an inverse, sheared ones included.
+    /// Unnormalised. By the cofactors, which are the inverse transpose times the determinant: right for every matrix
+    /// that has an inverse, sheared ones included.
     SHARED_FN Vec3<F> normal(Vec3<F> n) const {
         const Vec3<F> r0 = row(0), r1 = row(1), r2 = row(2);
         return Vec3<F>{dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n)} * handedness();
@@ -101,18 +102,21 @@ struct SurfaceMaps {
 
 /// Attributes that not every mesh has, of one lane.
 template <class F>
-SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* index, float u, float v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
+SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* index, float u, float v, int i,
+                          SurfaceMaps<F>& maps, Interaction<F>& it) {
     const float w = 1.0f - u - v;
     const unsigned a = index[0], b = index[1], c = index[2];
     set_vec(maps.uv[1], i, g.uv1 ? g.uv1[a] * w + g.uv1[b] * u + g.uv1[c] * v : Vec2f{0, 0});
     Vec4f tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
     if (g.tangents) {
         const Vec4f ta = g.tangents[a], tb = g.tangents[b], tc = g.tangents[c];
-        tangent = {ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v, ta.w};
+        tangent = {ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v,
+                   ta.w};
     }
     if (g.colors) {
         const Vec4f ca = g.colors[a], cb = g.colors[b], cc = g.colors[c];
-        color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v, ca.w * w + cb.w * u + cc.w * v};
+        color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v,
+                 ca.w * w + cb.w * u + cc.w * v};
     }
     set_vec(maps.tangent, i, tangent);
     set_vec(maps.color, i, color);
@@ -121,9 +125,9 @@ SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* 
 
 /// The shading normal, bent as little as keeps the mirror direction above the surface.
 ///
-/// Strongly tilted normals (of normal maps, and of smooth shading on coarse meshes) mirror the viewer into the surface, where
-/// nothing is seen: black rims on metals. All vectors are unit and on the viewer's side.
-/// Source: Keller et al., "The Iray Light Transport Simulation and Rendering System", 2017, A.3.
+/// Strongly tilted normals (of normal maps, and of smooth shading on coarse meshes) mirror the viewer into the surface,
+/// where nothing is seen: black rims on metals. All vectors are unit and on the viewer's side. Source: Keller et al.,
+/// "The Iray Light Transport Simulation and Rendering System", 2017, A.3.
 template <class F>
 SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> wo) {
     const Vec3<F> mirrored = shading * (F(2.0f) * dot(shading, wo)) - wo;
@@ -138,7 +142,8 @@ SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> 
 /// @tparam R    set of requirement:: bits
 /// @param wo    unit vector back along the ray
 template <class F, unsigned R>
-SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo, Mask<F> active) {
+SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo,
+                                          Mask<F> active) {
     constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0;
     const float* rows[4][kLanes<F>];  // three vertices and the material of every lane
     AffineLanes<F> world_from_object;
@@ -160,13 +165,16 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
             for (int r = 0; r < 3; ++r)
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
         }
-        if constexpr (kMaps) fetch_maps(scene.materials[instance.material], g, index, lane(hit.u, from), lane(hit.v, from), i, maps, it);
+        if constexpr (kMaps)
+            fetch_maps(scene.materials[instance.material], g, index, lane(hit.u, from), lane(hit.v, from), i, maps, it);
     }
     F corner[3][8], material[8];
     for (int c = 0; c < 3; ++c) load_rows(rows[c], corner[c]);
     load_rows(rows[3], material);
-    const Vec3<F> p0{corner[0][0], corner[0][1], corner[0][2]}, p1{corner[1][0], corner[1][1], corner[1][2]}, p2{corner[2][0], corner[2][1], corner[2][2]};
-    const Vec3<F> n0{corner[0][3], corner[0][4], corner[0][5]}, n1{corner[1][3], corner[1][4], corner[1][5]}, n2{corner[2][3], corner[2][4], corner[2][5]};
+    const Vec3<F> p0{corner[0][0], corner[0][1], corner[0][2]}, p1{corner[1][0], corner[1][1], corner[1][2]},
+        p2{corner[2][0], corner[2][1], corner[2][2]};
+    const Vec3<F> n0{corner[0][3], corner[0][4], corner[0][5]}, n1{corner[1][3], corner[1][4], corner[1][5]},
+        n2{corner[2][3], corner[2][4], corner[2][5]};
     it.base_color = {material[0], material[1], material[2]};
     it.metallic = material[3];
     it.emission = {material[4], material[5], material[6]};
@@ -194,10 +202,12 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
         it.origin = offset_origin(object_point, object_normal * side);
     }
     it.geometric_normal = it.geometric_normal * side;
-    // The shading normal follows the geometric one to the viewer's side, also where mirrored transforms flipped one of them.
+    // The shading normal follows the geometric one to the viewer's side, also where mirrored transforms flipped one of
+    // them.
     it.shading_normal = it.shading_normal * copy_sign(F(1.0f), dot(it.shading_normal, it.geometric_normal));
     if constexpr (kMaps) {
-        maps.uv[0] = {corner[0][6] * w + corner[1][6] * hit.u + corner[2][6] * hit.v, corner[0][7] * w + corner[1][7] * hit.u + corner[2][7] * hit.v};
+        maps.uv[0] = {corner[0][6] * w + corner[1][6] * hit.u + corner[2][6] * hit.v,
+                      corner[0][7] * w + corner[1][7] * hit.u + corner[2][7] * hit.v};
         if constexpr (kTransforms) {
             const Vec3<F> t = world_from_object.vector({maps.tangent.x, maps.tangent.y, maps.tangent.z});
             maps.tangent = {t.x, t.y, t.z, maps.tangent.w * world_from_object.handedness()};
@@ -207,44 +217,53 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
     // A shading normal that points away from the viewer cannot be shaded: bend it to just inside the visible side.
     const F facing = dot(it.shading_normal, wo);
     const F kLeast = F(1e-3f);
-    it.shading_normal = select(facing < kLeast, normalize(it.shading_normal + wo * (kLeast - facing)), it.shading_normal);
+    it.shading_normal =
+        select(facing < kLeast, normalize(it.shading_normal + wo * (kLeast - facing)), it.shading_normal);
     return it;
 }
 
 /// Textures, lane by lane: base colour, metallic-roughness, emission and the normal map.
 template <class F>
-SHARED_FN void apply_maps(const SceneView& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side, Mask<F> active, Interaction<F>& it) {
+SHARED_FN void apply_maps(const SceneView& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side, Mask<F> active,
+                          Interaction<F>& it) {
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
         const int i = __builtin_ctz(todo);
         const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
-        const Vec2f uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)}, uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
-        const Vec4f vertex_color{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i), lane(maps.color.w, i)};
+        const Vec2f uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)},
+            uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
+        const Vec4f vertex_color{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i),
+                                 lane(maps.color.w, i)};
         Vec3f base = m.base_color * Vec3f{vertex_color.x, vertex_color.y, vertex_color.z};
         float alpha = m.alpha * vertex_color.w;
         if (m.base_color_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.base_color_texture.texture, apply_transform(m.base_color_texture, uv0, uv1), true);
+            const Vec4f t = sample_texture<float>(scene.textures, m.base_color_texture.texture,
+                                                  apply_transform(m.base_color_texture, uv0, uv1), true);
             base = base * Vec3f{t.x, t.y, t.z};
             alpha *= t.w;
         }
         set_vec(it.base_color, i, base);
         set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : 1.0f);
         if (m.metallic_roughness_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.metallic_roughness_texture.texture, apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
+            const Vec4f t = sample_texture<float>(scene.textures, m.metallic_roughness_texture.texture,
+                                                  apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
             set_lane(it.roughness, i, m.roughness * t.y);
             set_lane(it.metallic, i, m.metallic * t.z);
         }
         if (m.emissive_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.emissive_texture.texture, apply_transform(m.emissive_texture, uv0, uv1), true);
+            const Vec4f t = sample_texture<float>(scene.textures, m.emissive_texture.texture,
+                                                  apply_transform(m.emissive_texture, uv0, uv1), true);
             set_vec(it.emission, i, m.emission * Vec3f{t.x, t.y, t.z});
         }
         if (m.unlit) set_vec(it.emission, i, base);
         const Vec3f tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
         if (m.normal_texture.texture >= 0 && dot(tangent, tangent) > 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.normal_texture.texture, apply_transform(m.normal_texture, uv0, uv1), true);
+            const Vec4f t = sample_texture<float>(scene.textures, m.normal_texture.texture,
+                                                  apply_transform(m.normal_texture, uv0, uv1), true);
             const Vec3f local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
             // The tangent frame belongs to the front side; seen from behind, its normal points the other way.
             const float s = lane(side, i);
-            const Vec3f n = Vec3f{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
+            const Vec3f n =
+                Vec3f{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
             const Vec3f flat = tangent - n * dot(tangent, n);
             if (dot(flat, flat) > 1e-20f) {
                 const Vec3f tu = normalize(flat);

@@ -1,5 +1,5 @@
-// Unidirectional path tracing with next-event estimation, one vertex at a time: the drivers (tiles and rings of packets on
-// the CPU, a loop on the GPU) own the queues and the tracing, these functions own the light transport.
+// Unidirectional path tracing with next-event estimation, one vertex at a time: the drivers (tiles and rings of packets
+// on the CPU, a loop on the GPU) own the queues and the tracing, these functions own the light transport.
 #pragma once
 
 #include "kernels/bsdf/bsdf.h"
@@ -29,7 +29,7 @@ struct PathState {
     F bsdf_pdf;                 ///< solid angle pdf of `direction`; 0: no light sampling competed (camera ray)
     F light_weight;             ///< sum of the selection weights of all lights at `origin`
     UInt<F> sampler_key, sample;
-    UInt<F> bounces;            ///< total | diffuse << 8 | glossy << 16
+    UInt<F> bounces;  ///< total | diffuse << 8 | glossy << 16
 };
 
 /// A ray towards a light and what arrives if nothing is in between.
@@ -71,7 +71,8 @@ SHARED_FN Vec3<F> clamp_contribution(const Settings& settings, Mask<F> direct, V
     return select(largest > limit, L * (limit / largest), L);
 }
 
-// ------------------------------------------------------------------------------------- selection among the light entries
+// ------------------------------------------------------------------------------------- selection among the light
+// entries
 
 /// Selection weight of the emissive triangles as one entry: their irradiance at p as if they were a ball around their
 /// centre. By position alone, so that a hit on one can ask for it too.
@@ -86,7 +87,8 @@ SHARED_FN float environment_weight(const LightSet& lights) { return lights.map.a
 
 /// Emission of an emissive triangle seen along the path, weighted against having sampled it.
 template <class F>
-SHARED_FN F emitter_mis(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, const Interaction<F>& it, Mask<F> active) {
+SHARED_FN F emitter_mis(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, const Interaction<F>& it,
+                        Mask<F> active) {
     F density(0.0f);
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
         const int i = __builtin_ctz(todo);
@@ -111,7 +113,8 @@ SHARED_FN Vec3<F> visible_lights(const SceneView& scene, const PathState<F>& pat
         // A sun's distance is kInfinity itself: it shines where the ray meets nothing.
         const Mask<F> seen = active & (hit.pdf > F(0.0f)) & (hit.distance <= distance);
         if (!any(seen)) continue;
-        const F selected = light_weight(keys, lights.key_count[i], path.time, path.origin, path.direction) / max(path.light_weight, F(1e-30f));
+        const F selected = light_weight(keys, lights.key_count[i], path.time, path.origin, path.direction) /
+                           max(path.light_weight, F(1e-30f));
         const F weight = select(path.bsdf_pdf > F(0.0f), mis_weight(path.bsdf_pdf, selected * hit.pdf), F(1.0f));
         sum = select(seen, sum + hit.radiance * weight, sum);
     }
@@ -134,7 +137,8 @@ SHARED_FN Vec3<F> shade_miss(const SceneView& scene, const PathState<F>& path, M
     }
     const Mask<F> camera_ray = path.bounces == UInt<F>(0u);
     if (!lights.environment_visible) L = select(camera_ray, Vec3<F>{F(0.0f), F(0.0f), F(0.0f)}, L);
-    return select(active, clamp_contribution(scene.settings, path.bounces < UInt<F>(2u), L * path.beta), Vec3<F>{F(0.0f), F(0.0f), F(0.0f)});
+    return select(active, clamp_contribution(scene.settings, path.bounces < UInt<F>(2u), L * path.beta),
+                  Vec3<F>{F(0.0f), F(0.0f), F(0.0f)});
 }
 
 // ----------------------------------------------------------------------------------------------- next-event estimation
@@ -144,9 +148,9 @@ template <class F>
 struct ChosenLight {
     Vec3<F> direction, radiance;
     F distance;
-    F pdf;            ///< solid angle, with the choice; for delta lights the probability of the choice
+    F pdf;  ///< solid angle, with the choice; for delta lights the probability of the choice
     Mask<F> delta;
-    F total_weight;   ///< of all entries
+    F total_weight;  ///< of all entries
 };
 
 /// Index of the largest entry of a CDF that does not exceed u.
@@ -154,13 +158,17 @@ SHARED_FN int find_in_cdf(const float* cdf, int count, float u) {
     int low = 0, high = count - 1;
     while (low < high) {
         const int middle = (low + high + 1) / 2;
-        if (cdf[middle] <= u) low = middle; else high = middle - 1;
+        if (cdf[middle] <= u)
+            low = middle;
+        else
+            high = middle - 1;
     }
     return low;
 }
 
 /// Replaces what a moving or textured emitter has of its own at (b1, b2).
-SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& triangle, float time, float b1, float b2, Vec3f& point, Vec3f& normal, Vec3f& emission) {
+SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& triangle, float time, float b1, float b2,
+                               Vec3f& point, Vec3f& normal, Vec3f& emission) {
     const Instance& instance = scene.instances[triangle.instance];
     const Geometry& g = scene.geometries[instance.geometry];
     const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
@@ -168,20 +176,24 @@ SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& t
     Vec3f corners[3];
     for (int c = 0; c < 3; ++c) {
         const Vec3f q = g.vertices[index[c]].position;
-        corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3], at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
+        corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3],
+                      at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
                       at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
     }
     point = barycentric(corners[0], corners[1], corners[2], b1, b2);
     normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const TextureSlot& slot = scene.materials[instance.material].emissive_texture;
     if (slot.texture < 0) return;
-    const Vec4f t = sample_texture<float>(scene.textures, slot.texture, apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
+    const Vec4f t =
+        sample_texture<float>(scene.textures, slot.texture,
+                              apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
     emission = emission * Vec3f{t.x, t.y, t.z};
 }
 
 /// A point on an emissive triangle, chosen in proportion to luminance * area.
 template <class F>
-SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F time, F choice, Vec2<F> u, Mask<F> active) {
+SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F time, F choice, Vec2<F> u,
+                                         Mask<F> active) {
     const LightSet& lights = scene.lights;
     const EmissiveTriangle* chosen[kLanes<F>];
     const float* rows[2][kLanes<F>];
@@ -198,7 +210,8 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
     // Uniform in the triangle.  Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
     const F offset = (u.y - u.x) * F(0.5f);
     const Mask<F> upper = offset > F(0.0f);
-    const F b1 = select(upper, u.x * F(0.5f), u.x * F(0.5f) - offset), b2 = select(upper, u.y * F(0.5f) + offset, u.y * F(0.5f));
+    const F b1 = select(upper, u.x * F(0.5f), u.x * F(0.5f) - offset),
+            b2 = select(upper, u.y * F(0.5f) + offset, u.y * F(0.5f));
     const Vec3<F> edge1{first[3], first[4], first[5]}, edge2{first[6], first[7], second[0]};
     Vec3<F> point = Vec3<F>{first[0], first[1], first[2]} + edge1 * b1 + edge2 * b2;
     Vec3<F> normal = cross(edge1, edge2);
@@ -221,7 +234,8 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
     return s;
 }
 
-/// Weighted reservoir over the entries: one pass, one random number.  Source: Chao 1982; Wyman 2021 (Ray Tracing Gems II, 22).
+/// Weighted reservoir over the entries: one pass, one random number.  Source: Chao 1982; Wyman 2021 (Ray Tracing Gems
+/// II, 22).
 template <class F>
 struct Reservoir {
     F total = F(0.0f), chosen = F(0.0f), u;
@@ -237,7 +251,8 @@ struct Reservoir {
 };
 
 template <class F, unsigned R>
-SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F> n, F time, F choice, Vec2<F> u, Mask<F> active) {
+SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F> n, F time, F choice, Vec2<F> u,
+                                      Mask<F> active) {
     const LightSet& lights = scene.lights;
     ChosenLight<F> c;
     c.direction = n;
@@ -258,7 +273,8 @@ SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F>
         const Light* keys = lights.keys + lights.first[i];
         const LightSample<F> s = sample_light(keys, lights.key_count[i], time, p, u);
         const bool delta = (R & requirement::kEmitters) == 0 || i >= lights.visible_count;
-        const F weight = delta ? luminance(s.radiance) * max(dot(n, s.direction), F(0.0f)) : light_weight(keys, lights.key_count[i], time, p, n);
+        const F weight = delta ? luminance(s.radiance) * max(dot(n, s.direction), F(0.0f))
+                               : light_weight(keys, lights.key_count[i], time, p, n);
         take(reservoir.offer(weight), s, delta);
     }
     if constexpr ((R & requirement::kEmitters) != 0) {
@@ -285,15 +301,16 @@ SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F>
 /// What happens at a hit: light that the surface emits, a shadow ray, and the path's next ray.
 template <class F>
 struct VertexResult {
-    Vec3<F> emitted;        ///< radiance times throughput, 0 in inactive lanes
+    Vec3<F> emitted;  ///< radiance times throughput, 0 in inactive lanes
     ShadowRay<F> shadow;
     PathState<F> next;
-    Mask<F> alive;          ///< the path goes on along next
-    Vec3<F> albedo, normal; ///< of the surface, for the data layers
+    Mask<F> alive;           ///< the path goes on along next
+    Vec3<F> albedo, normal;  ///< of the surface, for the data layers
 };
 
 template <class F, unsigned R>
-SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, Mask<F> active) {
+SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit,
+                                    Mask<F> active) {
     const Settings& settings = scene.settings;
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
@@ -304,10 +321,10 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     VertexResult<F> result;
 
     F emission_weight(1.0f);
-    if constexpr ((R & requirement::kEmitters) != 0)
-        emission_weight = emitter_mis(scene, path, hit, it, active);
+    if constexpr ((R & requirement::kEmitters) != 0) emission_weight = emitter_mis(scene, path, hit, it, active);
     const UInt<F> total = path.bounces & UInt<F>(0xffu);
-    result.emitted = select(active, clamp_contribution(settings, total < UInt<F>(2u), it.emission * path.beta * emission_weight), zero);
+    result.emitted = select(
+        active, clamp_contribution(settings, total < UInt<F>(2u), it.emission * path.beta * emission_weight), zero);
     if constexpr ((R & requirement::kMaps) != 0) active = active & !it.unlit;
 
     const Frame<F> frame(it.shading_normal);
@@ -334,10 +351,12 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     // A light's own surface must not hide it.
     result.shadow.distance = light.distance * F(1.0f - 1e-4f);
     result.shadow.radiance = clamp_contribution(settings, total == UInt<F>(0u), direct);
-    result.shadow.active = active & (light.pdf > F(0.0f)) & (max_component(direct) > F(0.0f)) & (dot(light.direction, it.geometric_normal) > F(0.0f));
+    result.shadow.active = active & (light.pdf > F(0.0f)) & (max_component(direct) > F(0.0f)) &
+                           (dot(light.direction, it.geometric_normal) > F(0.0f));
 
     // The next ray.
-    const BsdfSample<F> sample = sample_bsdf(bsdf, wo_local, sampler.get_2d(base + UInt<F>(dimension::kBsdf)), choice.x);
+    const BsdfSample<F> sample =
+        sample_bsdf(bsdf, wo_local, sampler.get_2d(base + UInt<F>(dimension::kBsdf)), choice.x);
     const Vec3<F> wi = normalize(frame.to_world(sample.wi));
     result.next = path;
     result.next.origin = it.origin;
@@ -348,16 +367,19 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     const UInt<F> kind = select(sample.glossy, UInt<F>(1u << 16), UInt<F>(1u << 8));
     result.next.bounces = path.bounces + UInt<F>(1u) + kind;
     const auto below = [](UInt<F> a, unsigned limit) { return a < UInt<F>(limit); };
-    active = active & below(total, static_cast<unsigned>(settings.max_bounces)) &
-             select(sample.glossy, below((path.bounces >> 16) & UInt<F>(0xffu), static_cast<unsigned>(settings.max_glossy)),
-                    below((path.bounces >> 8) & UInt<F>(0xffu), static_cast<unsigned>(settings.max_diffuse)));
+    active =
+        active & below(total, static_cast<unsigned>(settings.max_bounces)) &
+        select(sample.glossy, below((path.bounces >> 16) & UInt<F>(0xffu), static_cast<unsigned>(settings.max_glossy)),
+               below((path.bounces >> 8) & UInt<F>(0xffu), static_cast<unsigned>(settings.max_diffuse)));
     const F brightest = max_component(result.next.beta);
     active = active & (sample.pdf > F(0.0f)) & (brightest > F(0.0f)) & (dot(wi, it.geometric_normal) > F(0.0f));
 
     // Russian roulette by the square root of the throughput; the kept paths carry more. The first bounce is spared: it
-    // carries most of an image's variance (spheres at 64 samples: trimmed relMSE 0.0024 against 0.0027, for 6 % of speed).
+    // carries most of an image's variance (spheres at 64 samples: trimmed relMSE 0.0024 against 0.0027, for 6 % of
+    // speed).
     const F survival = select(total < UInt<F>(1u), F(1.0f), min(sqrt(brightest), F(1.0f)));
-    const F toss = sampler.get_1d(base + UInt<F>(dimension::kPerBounce * 64));  // a dimension of its own, far from the others
+    const F toss =
+        sampler.get_1d(base + UInt<F>(dimension::kPerBounce * 64));  // a dimension of its own, far from the others
     active = active & (toss < survival);
     result.next.beta = result.next.beta * (F(1.0f) / max(survival, F(1e-10f)));
     result.alive = active;

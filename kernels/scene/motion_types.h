@@ -6,8 +6,8 @@ namespace kadr::kernels {
 
 /// One transform at one time: object to world is T * R * S.
 struct FrameSrt {
-    float axis[3];         ///< rotation axis, unit length
-    float angle;           ///< radians, in [-pi, pi]
+    float axis[3];  ///< rotation axis, unit length
+    float angle;    ///< radians, in [-pi, pi]
     float scale[3];
     float translation[3];  ///< metres, relative to the render origin
     float time;            ///< in [0, 1] over the shutter
@@ -17,8 +17,8 @@ struct FrameSrt {
 /// One affine transform at one time, row-major 3x4; column 3 is the translation relative to the render origin.
 struct FrameMatrix {
     float matrix[3][4];
-    float time;            ///< in [0, 1] over the shutter
-    float padding[3];      ///< keeps the 64 bytes of hiprtFrameMatrix
+    float time;        ///< in [0, 1] over the shutter
+    float padding[3];  ///< keeps the 64 bytes of hiprtFrameMatrix
 };
 
 /// The frames [first_frame, first_frame + frame_count) of one instance.

@@ -11,7 +11,7 @@ enum class TexelFormat : unsigned char {
     rgba8_linear,  ///< 8 bits, data
     rgba16_srgb,   ///< 16 bits
     rgba16_linear,
-    rgba32f,       ///< floats, linear
+    rgba32f,  ///< floats, linear
 };
 
 /// A four-channel image; row 0 is the top row (glTF's v = 0).
@@ -35,44 +35,44 @@ enum class AlphaMode : unsigned char { opaque, mask, blend };
 /// glTF metallic-roughness material.
 struct Material {
     // The first eight floats are fetched together (see load_rows in math/wide.h): keep their order.
-    Vec3f base_color{1, 1, 1};   ///< linear
+    Vec3f base_color{1, 1, 1};  ///< linear
     float metallic = 1;
-    Vec3f emission{0, 0, 0};     ///< radiance: emissiveFactor * emissiveStrength
-    float roughness = 1;         ///< perceptual; alpha_ggx = roughness^2
+    Vec3f emission{0, 0, 0};  ///< radiance: emissiveFactor * emissiveStrength
+    float roughness = 1;      ///< perceptual; alpha_ggx = roughness^2
     float alpha = 1;
     float alpha_cutoff = 0.5f;
     float normal_scale = 1;
     float occlusion_strength = 1;  ///< read, unused: both integrators trace what baked occlusion imitates
     AlphaMode alpha_mode = AlphaMode::opaque;
     bool double_sided = false;
-    bool unlit = false;          ///< KHR_materials_unlit: emits its base colour, reflects nothing
+    bool unlit = false;  ///< KHR_materials_unlit: emits its base colour, reflects nothing
     TextureSlot base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture, occlusion_texture;
 };
 
 /// What every shaded point needs of a vertex, in one half of a cache line.
 struct Vertex {
     Vec3f position;
-    Vec3f normal;                ///< unit; zero where the mesh is flat
-    Vec2f uv;                    ///< of set 0; zero without one
+    Vec3f normal;  ///< unit; zero where the mesh is flat
+    Vec2f uv;      ///< of set 0; zero without one
 };
 static_assert(sizeof(Vertex) == 32, "fetched as eight floats");
 
 /// A triangle mesh in its own coordinates (normalised to order 1 by the loader), or, flattened, relative to the render
 /// origin. Null pointers: attribute absent.
 struct Geometry {
-    const Vertex* vertices;      ///< [vertex_count]
-    const unsigned* indices;     ///< [3 * triangle_count]
-    const Vec4f* tangents;       ///< [vertex_count] xyz unit, w = +-1 handedness; null unless a normal texture is used
-    const Vec2f* uv1;            ///< [vertex_count] of set 1
-    const Vec4f* colors;         ///< [vertex_count] linear RGBA, multiplies the base colour
+    const Vertex* vertices;   ///< [vertex_count]
+    const unsigned* indices;  ///< [3 * triangle_count]
+    const Vec4f* tangents;    ///< [vertex_count] xyz unit, w = +-1 handedness; null unless a normal texture is used
+    const Vec2f* uv1;         ///< [vertex_count] of set 1
+    const Vec4f* colors;      ///< [vertex_count] linear RGBA, multiplies the base colour
     unsigned vertex_count, triangle_count;
 };
 
 /// Shading's view of one instance. Both matrices are row-major 3x4 / 3x3; identity for flattened geometry.
 struct Instance {
     unsigned geometry, material;
-    unsigned id;                 ///< stable over frames (AOVs)
-    int emitter;                 ///< index into Lights::mesh_emitters; -1: does not emit
+    unsigned id;  ///< stable over frames (AOVs)
+    int emitter;  ///< index into Lights::mesh_emitters; -1: does not emit
 };
 
 enum class LightKind : unsigned char { directional, point, spot, area };
@@ -80,36 +80,36 @@ enum class SpotFalloff : unsigned char { gltf, linear, blender };
 
 /// A light at one time of the shutter.
 struct Light {
-    Vec3f radiance{0, 0, 0};     ///< colour * strength: lux (directional), candela (point, spot), nit (area)
+    Vec3f radiance{0, 0, 0};  ///< colour * strength: lux (directional), candela (point, spot), nit (area)
     LightKind kind = LightKind::point;
     SpotFalloff falloff = SpotFalloff::gltf;
-    Vec3f position{0, 0, 0};     ///< relative to the render origin
-    Vec3f direction{0, 0, -1};   ///< the way the light travels (area: the side that emits)
-    Vec3f axis_u{1, 0, 0};       ///< area: half of the rectangle's first side; second is axis_v
+    Vec3f position{0, 0, 0};    ///< relative to the render origin
+    Vec3f direction{0, 0, -1};  ///< the way the light travels (area: the side that emits)
+    Vec3f axis_u{1, 0, 0};      ///< area: half of the rectangle's first side; second is axis_v
     Vec3f axis_v{0, 1, 0};
     float cos_inner = 1, cos_outer = 0;
     float inner_rad = 0, outer_rad = 0;
-    float range = 0;             ///< metres; 0: infinite
-    float radius = 0;            ///< point and spot: sphere of this radius; 0: a point
-    float cos_angular_radius = 1;///< directional: 1 is a parallel beam
+    float range = 0;               ///< metres; 0: infinite
+    float radius = 0;              ///< point and spot: sphere of this radius; 0: a point
+    float cos_angular_radius = 1;  ///< directional: 1 is a parallel beam
 };
 
 /// A camera at one time of the shutter.
 struct CameraKey {
-    Vec3f position;              ///< relative to the render origin
-    float rotation[4];           ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
-    float tan_half_width;        ///< perspective: half the image's width at unit distance; orthographic: half width in metres
+    Vec3f position;        ///< relative to the render origin
+    float rotation[4];     ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
+    float tan_half_width;  ///< perspective: half the image's width at unit distance; orthographic: half width in metres
     float tan_half_height;
-    float lens_radius;           ///< metres; 0: pinhole
-    float focus_distance;        ///< metres along the view axis
+    float lens_radius;     ///< metres; 0: pinhole
+    float focus_distance;  ///< metres along the view axis
 };
 
 struct Camera {
-    const CameraKey* keys;       ///< evenly spaced over the shutter
+    const CameraKey* keys;  ///< evenly spaced over the shutter
     int key_count;
     bool orthographic;
-    int blades;                  ///< 0: round aperture
-    float near_clip, far_clip;   ///< metres along the view axis; 0 and infinity when the camera has none
+    int blades;                 ///< 0: round aperture
+    float near_clip, far_clip;  ///< metres along the view axis; 0 and infinity when the camera has none
 };
 
 enum class FilterKind : unsigned char { box, gaussian, mitchell, blackman_harris };
@@ -122,7 +122,7 @@ struct Settings {
     float filter_radius = 0.5f;  ///< half of the full width, pixels
     int width = 0, height = 0;
     int max_bounces = 8, max_diffuse = 8, max_glossy = 8;
-    unsigned seed = 0;           ///< already mixed with the frame's number where the seed is animated
+    unsigned seed = 0;                           ///< already mixed with the frame's number where the seed is animated
     float clamp_direct = 0, clamp_indirect = 0;  ///< 0: none
     bool cull_backfaces = false;
     bool transparent_background = false;

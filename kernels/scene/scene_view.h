@@ -25,42 +25,42 @@ struct TransformKey {
 /// Where an instance is during the shutter: one matrix (still), two matrices (linear), or keys evenly spaced on [0, 1].
 struct InstanceMotion {
     enum class Kind : unsigned char { still, linear, keys };
-    unsigned first;   ///< into SceneView::matrices (still, linear) or SceneView::keys
+    unsigned first;  ///< into SceneView::matrices (still, linear) or SceneView::keys
     unsigned count;
     Kind kind;
-    bool identity;    ///< flattened: coordinates are relative to the render origin already
+    bool identity;  ///< flattened: coordinates are relative to the render origin already
 };
 
 /// A triangle that emits, at the shutter's opening. Chosen in proportion to luminance * world area.
 struct EmissiveTriangle {
     // Sixteen floats, fetched together (see load_rows): keep their order.
-    Vec3f corner;                 ///< relative to the render origin
-    Vec3f edge1, edge2;           ///< to the second and third corner
-    Vec3f emission;               ///< radiance; of a textured emitter the factor
-    float density;                ///< pdf per area of a point on it
+    Vec3f corner;        ///< relative to the render origin
+    Vec3f edge1, edge2;  ///< to the second and third corner
+    Vec3f emission;      ///< radiance; of a textured emitter the factor
+    float density;       ///< pdf per area of a point on it
     unsigned instance, primitive;
-    unsigned varies;              ///< 1: textured or moving, so that a point of it has to be looked up
+    unsigned varies;  ///< 1: textured or moving, so that a point of it has to be looked up
 };
 static_assert(sizeof(EmissiveTriangle) == 64, "fetched as sixteen floats");
 
 /// Everything that emits, as next-event estimation sees it: entries that compete for the one shadow ray of a hit.
 struct LightSet {
-    const Light* keys;            ///< [sum of counts]
-    const int* first;             ///< [count] into keys
-    const int* key_count;         ///< [count]
-    int count;                    ///< punctual and area lights
-    int visible_count;            ///< how many of them have a surface (area, spheres, suns with an angle); those come first
+    const Light* keys;     ///< [sum of counts]
+    const int* first;      ///< [count] into keys
+    const int* key_count;  ///< [count]
+    int count;             ///< punctual and area lights
+    int visible_count;     ///< how many of them have a surface (area, spheres, suns with an angle); those come first
     // emissive triangles, as one entry
     const EmissiveTriangle* triangles;
-    const float* triangle_cdf;    ///< [triangle_count + 1], from 0 to 1
+    const float* triangle_cdf;  ///< [triangle_count + 1], from 0 to 1
     int triangle_count;
-    const float* instance_density;///< [instance] luminance / sum(luminance * area): pdf per area of its triangles
-    float emitted_power;          ///< sum(luminance * area) over all emissive triangles
+    const float* instance_density;  ///< [instance] luminance / sum(luminance * area): pdf per area of its triangles
+    float emitted_power;            ///< sum(luminance * area) over all emissive triangles
     Vec3f emitter_centre;
     float emitter_radius_squared;
     // environment
-    Vec3f environment;            ///< constant radiance; unused with a map
-    bool environment_visible;     ///< to camera rays
+    Vec3f environment;         ///< constant radiance; unused with a map
+    bool environment_visible;  ///< to camera rays
     bool has_map;
     EnvironmentMap map;
 };
@@ -68,23 +68,25 @@ struct LightSet {
 struct SceneView {
     const Geometry* geometries;
     const Instance* instances;
-    const InstanceMotion* motions;   ///< [instance]
+    const InstanceMotion* motions;  ///< [instance]
     const Affine* matrices;
     const TransformKey* keys;
     const Material* materials;
     const Texture* textures;
     LightSet lights;
     Camera camera;
-    const Affine* previous_matrices; ///< [instance] world_from_object one frame earlier; null: no motion layer
-    Camera previous_camera;          ///< one key
+    const Affine* previous_matrices;  ///< [instance] world_from_object one frame earlier; null: no motion layer
+    Camera previous_camera;           ///< one key
     Settings settings;
 };
 
-/// What a shot asks of the kernels beyond the plain case; they are compiled once a set, so a shot pays for what it uses.
+/// What a shot asks of the kernels beyond the plain case; they are compiled once a set, so a shot pays for what it
+/// uses.
 namespace requirement {
 inline constexpr unsigned kMaps = 1;        ///< textures, normal maps, vertex colours, unlit materials
 inline constexpr unsigned kTransforms = 2;  ///< instances that are not flattened, moving ones
-inline constexpr unsigned kEmitters = 4;    ///< lights that rays can hit: MIS with area lights, triangles, environment maps
+inline constexpr unsigned kEmitters =
+    4;  ///< lights that rays can hit: MIS with area lights, triangles, environment maps
 inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters;
 }  // namespace requirement
 

@@ -15,9 +15,9 @@ namespace kadr {
 /// Samples [first_sample, first_sample + sample_count) of every pixel.
 struct Pass {
     int first_sample = 0, sample_count = 1;
-    int total_samples = 0;                             ///< of the frame; 1 under `direct`: pixel centres, pinhole, no blur
-    const std::atomic<bool>* cancel = nullptr;         ///< set: return early (film is then incomplete)
-    std::function<void(double fraction)> progress;     ///< 0..1, called from any thread, rarely
+    int total_samples = 0;                          ///< of the frame; 1 under `direct`: pixel centres, pinhole, no blur
+    const std::atomic<bool>* cancel = nullptr;      ///< set: return early (film is then incomplete)
+    std::function<void(double fraction)> progress;  ///< 0..1, called from any thread, rarely
 };
 
 /// Counters since the last set_frame, but for the times of load.
@@ -31,31 +31,32 @@ struct DeviceStatistics {
 class Device {
 public:
     virtual ~Device() = default;
-    virtual std::string name() const = 0;                       ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
-    /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image, copied.
+    virtual std::string name() const = 0;  ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
+    /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image,
+    /// copied.
     virtual void load(const Scene& scene, const Image* environment) = 0;
     virtual void set_frame(const SceneSnapshot& snapshot) = 0;
-    virtual void render(const Pass& pass, Film& film) = 0;      ///< adds to the film
+    virtual void render(const Pass& pass, Film& film) = 0;  ///< adds to the film
     virtual DeviceStatistics statistics() const = 0;
 };
 
 struct DeviceRequest {
-    std::string name = "auto";    ///< auto | cpu | hiprt
-    int threads = 0;              ///< 0: as many as the machine gives
-    int width = 0;                ///< lanes; 0: KADR_WIDTH, else what the processor has
+    std::string name = "auto";  ///< auto | cpu | hiprt
+    int threads = 0;            ///< 0: as many as the machine gives
+    int width = 0;              ///< lanes; 0: KADR_WIDTH, else what the processor has
 };
 
 struct DeviceChoice {
     std::unique_ptr<Device> device;
-    std::string why;              ///< "no GPU back end in this build"
+    std::string why;  ///< "no GPU back end in this build"
 };
 
 /// One line of `kadr devices`.
 struct DeviceReport {
-    std::string name;             ///< "cpu", "hiprt"
-    std::string description;      ///< hardware
+    std::string name;         ///< "cpu", "hiprt"
+    std::string description;  ///< hardware
     bool usable = false;
-    std::string reason;           ///< why not, when not
+    std::string reason;  ///< why not, when not
 };
 
 /// @throws InputError  for an unknown name or a device that is not usable, with the reason

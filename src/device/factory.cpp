@@ -22,10 +22,12 @@ int choose_width(int requested) {
         if (!text || !*text) return best_width();
         char* end = nullptr;
         const long value = std::strtol(text, &end, 10);
-        if (*end != '\0' || (value != 1 && value != 8)) throw InputError(fmt::format("KADR_WIDTH is '{}'", text), "expected 1 (the portable form) or 8 (AVX2)");
+        if (*end != '\0' || (value != 1 && value != 8))
+            throw InputError(fmt::format("KADR_WIDTH is '{}'", text), "expected 1 (the portable form) or 8 (AVX2)");
         width = static_cast<int>(value);
     }
-    if (width > best_width()) throw InputError("KADR_WIDTH is 8, but this processor has no AVX2", "use KADR_WIDTH=1, or leave it unset");
+    if (width > best_width())
+        throw InputError("KADR_WIDTH is 8, but this processor has no AVX2", "use KADR_WIDTH=1, or leave it unset");
     return width;
 }
 
@@ -39,8 +41,11 @@ std::string processor_name() {
 }  // namespace
 
 DeviceChoice make_device(const DeviceRequest& request) {
-    if (request.name == "hiprt") throw InputError(fmt::format("--device hiprt: {}", kNoHiprt), "use --device cpu, or --device auto, which takes the best that works");
-    if (request.name != "auto" && request.name != "cpu") throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu or hiprt");
+    if (request.name == "hiprt")
+        throw InputError(fmt::format("--device hiprt: {}", kNoHiprt),
+                         "use --device cpu, or --device auto, which takes the best that works");
+    if (request.name != "auto" && request.name != "cpu")
+        throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu or hiprt");
     DeviceChoice choice;
     choice.device = make_embree_device(request.threads, choose_width(request.width));
     choice.why = request.name == "cpu" ? "asked for by --device cpu" : kNoHiprt;
@@ -49,7 +54,10 @@ DeviceChoice make_device(const DeviceRequest& request) {
 
 std::vector<DeviceReport> list_devices() {
     const int width = choose_width(0);
-    return {{"cpu", fmt::format("{}, {} threads, {} lane{}", processor_name(), std::thread::hardware_concurrency(), width, width == 1 ? "" : "s"), true, ""},
+    return {{"cpu",
+             fmt::format("{}, {} threads, {} lane{}", processor_name(), std::thread::hardware_concurrency(), width,
+                         width == 1 ? "" : "s"),
+             true, ""},
             {"hiprt", "AMD and NVIDIA GPUs through HIPRT and Orochi", false, kNoHiprt}};
 }
 

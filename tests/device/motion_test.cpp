@@ -24,7 +24,8 @@ TEST(Motion, SlidingSquareCoversEachPixelForItsTime) {
     // World x of pixel column c is (c + 0.5 - 16) / 16 * 2.5; coverage is 1 - |x| / 2.
     for (const int c : {6, 10, 16, 22, 26}) {
         const double x = (c + 0.5 - 16) / 16 * 2.5;
-        EXPECT_NEAR(image.at(c, 16, 1), 1 - std::abs(x) / 2, 0.03) << "column " << c;  // Owen-Sobol in one dimension: about 4/256 + the pixel's width
+        EXPECT_NEAR(image.at(c, 16, 1), 1 - std::abs(x) / 2, 0.03)
+            << "column " << c;  // Owen-Sobol in one dimension: about 4/256 + the pixel's width
     }
 }
 
@@ -35,7 +36,8 @@ TEST(Motion, QuarterTurnKeepsItsRadius) {
     s.camera({0, 0, 10}, {0, 0, 0}, 0.15);
     s.snapshot.settings.width = s.snapshot.settings.height = 96;
     std::vector<glm::dmat4> frames;
-    for (int k = 0; k <= 9; ++k) frames.push_back(glm::rotate(glm::dmat4(1), k * kPi / 18, glm::dvec3(0, 0, 1)) * place({1, 0, 0}, 0.03));
+    for (int k = 0; k <= 9; ++k)
+        frames.push_back(glm::rotate(glm::dmat4(1), k * kPi / 18, glm::dvec3(0, 0, 1)) * place({1, 0, 0}, 0.03));
     s.add_moving(s.add_mesh(unit_square()), glowing(), frames);
     s.snapshot.settings.max_bounces = 0;
     const Image image = s.render(256).image;
@@ -60,7 +62,8 @@ TEST(Motion, EmbreeAndTheKernelsAgreeOnMovingNormals) {
         SmallScene s;
         std::vector<glm::dmat4> frames;
         for (int k = 0; k <= 9; ++k)
-            frames.push_back(place({k / 9.0, 0, 0}) * glm::rotate(glm::dmat4(1), spin ? k * kPi / 18 : 0.0, glm::normalize(glm::dvec3(1, 2, 3))));
+            frames.push_back(place({k / 9.0, 0, 0}) * glm::rotate(glm::dmat4(1), spin ? k * kPi / 18 : 0.0,
+                                                                  glm::normalize(glm::dvec3(1, 2, 3))));
         s.add_moving(s.add_mesh(unit_sphere()), material({0.8f, 0.8f, 0.8f}, 0, 0.6f), frames);
         kernels::Light sun;
         sun.kind = kernels::LightKind::directional;

@@ -22,7 +22,9 @@ inline GeometryData unit_sphere(int rings = 64) {
     for (int r = 0; r <= rings; ++r)
         for (int c = 0; c <= columns; ++c) {
             const double theta = kPi * r / rings, phi = 2 * kPi * c / columns;
-            const kernels::Vec3f p{static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)), static_cast<float>(std::sin(theta) * std::sin(phi))};
+            const kernels::Vec3f p{static_cast<float>(std::sin(theta) * std::cos(phi)),
+                                   static_cast<float>(std::cos(theta)),
+                                   static_cast<float>(std::sin(theta) * std::sin(phi))};
             g.positions.push_back(p);
             g.normals.push_back(p);
         }
@@ -91,12 +93,14 @@ struct SmallScene {
     }
 
     /// A still instance. `fixed`: may be flattened; otherwise it stays an instance.
-    void add_instance(unsigned geometry, const kernels::Material& m, const glm::dmat4& world_from_geometry, bool fixed = true) {
+    void add_instance(unsigned geometry, const kernels::Material& m, const glm::dmat4& world_from_geometry,
+                      bool fixed = true) {
         add_moving(geometry, m, {world_from_geometry}, fixed);
     }
 
     /// An instance with matrix frames over the shutter.
-    void add_moving(unsigned geometry, const kernels::Material& m, const std::vector<glm::dmat4>& frames, bool fixed = false) {
+    void add_moving(unsigned geometry, const kernels::Material& m, const std::vector<glm::dmat4>& frames,
+                    bool fixed = false) {
         scene.materials.push_back(m);
         SnapshotInstance instance;
         instance.geometry = geometry;
@@ -113,7 +117,8 @@ struct SmallScene {
             kernels::FrameMatrix frame{};
             for (int row = 0; row < 3; ++row)
                 for (int column = 0; column < 4; ++column)
-                    frame.matrix[row][column] = static_cast<float>(frames[k][column][row] - (column == 3 ? snapshot.render_origin[row] : 0.0));
+                    frame.matrix[row][column] =
+                        static_cast<float>(frames[k][column][row] - (column == 3 ? snapshot.render_origin[row] : 0.0));
             frame.time = frames.size() > 1 ? static_cast<float>(k) / static_cast<float>(frames.size() - 1) : 0.0f;
             motion.matrices.push_back(frame);
         }
@@ -154,6 +159,8 @@ struct SmallScene {
     Image environment;
 };
 
-inline glm::dmat4 place(glm::dvec3 position, double scale = 1) { return glm::scale(glm::translate(glm::dmat4(1), position), glm::dvec3(scale)); }
+inline glm::dmat4 place(glm::dvec3 position, double scale = 1) {
+    return glm::scale(glm::translate(glm::dmat4(1), position), glm::dvec3(scale));
+}
 
 }  // namespace kadr::test

@@ -1,7 +1,8 @@
 // kadr_replay SHOT [FRAME] [SAMPLES] [ROUNDS]: how much of a frame's CPU time is Embree's.
 //
-// Renders the frame once while recording every ray, then alternates between rendering it without recording and sending the
-// same rays, in the same order and packets, through Embree alone; one thread. Prints the medians of CPU seconds and their ratio.
+// Renders the frame once while recording every ray, then alternates between rendering it without recording and sending
+// the same rays, in the same order and packets, through Embree alone; one thread. Prints the medians of CPU seconds and
+// their ratio.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -34,10 +35,12 @@ double median(std::vector<double> values) {
 /// One frame, tile by tile, on this thread.
 class Frame {
 public:
-    Frame(const EmbreeScene& scene, int samples) : scene_(scene), samples_(samples), result_(std::make_unique<TileResult>()) {
+    Frame(const EmbreeScene& scene, int samples)
+        : scene_(scene), samples_(samples), result_(std::make_unique<TileResult>()) {
         const kernels::Settings& settings = scene.view().settings;
         kernels::build_filter(settings.filter, settings.filter_radius, filter_);
-        driver_.reset(best_width() == 8 ? make_avx2_driver(settings.integrator, scene.requirements()) : make_portable_driver(settings.integrator, scene.requirements()));
+        driver_.reset(best_width() == 8 ? make_avx2_driver(settings.integrator, scene.requirements())
+                                        : make_portable_driver(settings.integrator, scene.requirements()));
     }
 
     double render(std::vector<LoggedRay>* log) {
@@ -48,7 +51,9 @@ public:
         job.instanced = scene_.instanced();
         job.filter = &filter_;
         if (log) {
-            job.log = [](void* user, const LoggedRay& ray) { static_cast<std::vector<LoggedRay>*>(user)->push_back(ray); };
+            job.log = [](void* user, const LoggedRay& ray) {
+                static_cast<std::vector<LoggedRay>*>(user)->push_back(ray);
+            };
             job.log_user = log;
         }
         const double begin = cpu_seconds();
@@ -125,8 +130,10 @@ double replay(const EmbreeScene& scene, const std::vector<LoggedRay>& rays) {
         const LoggedRay& ray = rays[i];
         const RTCScene target = ray.flat ? scene.flat() : scene.instanced();
         context.shadow = ray.shadow;
-        if (ray.packet > 1) replay_packet(target, &ray, ray.packet, context);
-        else replay_single(target, ray, context);
+        if (ray.packet > 1)
+            replay_packet(target, &ray, ray.packet, context);
+        else
+            replay_single(target, ray, context);
         i += ray.packet;
     }
     return cpu_seconds() - begin;
@@ -161,8 +168,11 @@ int run(int argc, char** argv) {
     }
     const kernels::Settings& settings = embree.view().settings;
     const double pixel_samples = static_cast<double>(settings.width) * settings.height * samples;
-    std::printf("{\"rays\": %zu, \"rays_per_sample\": %.2f, \"render_cpu_s\": %.3f, \"embree_cpu_s\": %.3f, \"ratio\": %.3f, \"msamples_cpu_s\": %.3f}\n", rays.size(),
-                static_cast<double>(rays.size()) / pixel_samples, median(total), median(traced), median(ratio), pixel_samples / median(total) / 1e6);
+    std::printf(
+        "{\"rays\": %zu, \"rays_per_sample\": %.2f, \"render_cpu_s\": %.3f, \"embree_cpu_s\": %.3f, \"ratio\": %.3f, "
+        "\"msamples_cpu_s\": %.3f}\n",
+        rays.size(), static_cast<double>(rays.size()) / pixel_samples, median(total), median(traced), median(ratio),
+        pixel_samples / median(total) / 1e6);
     return 0;
 }
 
@@ -173,7 +183,8 @@ int main(int argc, char** argv) {
     try {
         return kadr::run(argc, argv);
     } catch (const kadr::InputError& error) {
-        for (const kadr::Diagnostic& diagnostic : error.diagnostics()) std::fprintf(stderr, "%s\n", diagnostic.text().c_str());
+        for (const kadr::Diagnostic& diagnostic : error.diagnostics())
+            std::fprintf(stderr, "%s\n", diagnostic.text().c_str());
         return 2;
     }
 }

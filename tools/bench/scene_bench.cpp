@@ -50,7 +50,8 @@ void snapshot(benchmark::State& state, const char* transform) {
     state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 constexpr char kStill[] = "";
-constexpr char kTurning[] = ", transform: { rotate: { axis: [0, 1, 0], angle: { keys: { 0 s: 0 deg, 1 s: 90 deg } } } }";
+constexpr char kTurning[] =
+    ", transform: { rotate: { axis: [0, 1, 0], angle: { keys: { 0 s: 0 deg, 1 s: 90 deg } } } }";
 BENCHMARK_CAPTURE(snapshot, still, kStill)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(snapshot, turning, kTurning)->Arg(100)->Arg(10000)->Unit(benchmark::kMillisecond);
 

@@ -19,7 +19,8 @@ BENCHMARK(parse_turntable)->Unit(benchmark::kMicrosecond);
 void parse_many_keys(benchmark::State& state) {
     std::string keys;
     for (int i = 0; i < state.range(0); ++i) keys += fmt::format("      {} f: [{}, 1, 5]\n", i, i * 0.01);
-    const std::string text = "kadr: 1\nscenes:\n  - { id: solids, gltf: assets/solids.glb }\ncamera:\n  position:\n    keys:\n" + keys;
+    const std::string text =
+        "kadr: 1\nscenes:\n  - { id: solids, gltf: assets/solids.glb }\ncamera:\n  position:\n    keys:\n" + keys;
     for (auto _ : state) benchmark::DoNotOptimize(parse_shot_text(text, kShots + "keys.yaml"));
     state.SetItemsProcessed(state.iterations() * state.range(0));
 }

@@ -13,9 +13,12 @@ float coverage(const GeometryUser& user, unsigned primitive, float u, float v) {
     const unsigned* index = geometry.indices + 3 * static_cast<std::size_t>(primitive);
     const float w = 1.0f - u - v;
     float alpha = material.alpha;
-    if (geometry.colors) alpha *= geometry.colors[index[0]].w * w + geometry.colors[index[1]].w * u + geometry.colors[index[2]].w * v;
+    if (geometry.colors)
+        alpha *= geometry.colors[index[0]].w * w + geometry.colors[index[1]].w * u + geometry.colors[index[2]].w * v;
     if (material.base_color_texture.texture < 0) return alpha;
-    const kernels::Vec2f at = kernels::apply_transform(material.base_color_texture, kernels::uv_at(geometry, index, 0, u, v), kernels::uv_at(geometry, index, 1, u, v));
+    const kernels::Vec2f at =
+        kernels::apply_transform(material.base_color_texture, kernels::uv_at(geometry, index, 0, u, v),
+                                 kernels::uv_at(geometry, index, 1, u, v));
     return alpha * kernels::sample_texture<float>(user.view->textures, material.base_color_texture.texture, at, true).w;
 }
 
@@ -31,7 +34,8 @@ float hash_unit(unsigned key, unsigned primitive, unsigned geometry) {
 }
 
 /// Whether the hit stops the ray.
-bool stops(const GeometryUser& user, QueryContext& context, unsigned lane, unsigned primitive, float u, float v, float facing) {
+bool stops(const GeometryUser& user, QueryContext& context, unsigned lane, unsigned primitive, float u, float v,
+           float facing) {
     const kernels::Material& material = user.view->materials[user.material];
     if (user.cull && !material.double_sided && facing > 0) return false;
     if (material.alpha_mode == kernels::AlphaMode::opaque) return true;
@@ -61,7 +65,8 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
         const float facing = RTCHitN_Ng_x(arguments->hit, n, i) * RTCRayN_dir_x(arguments->ray, n, i) +
                              RTCHitN_Ng_y(arguments->hit, n, i) * RTCRayN_dir_y(arguments->ray, n, i) +
                              RTCHitN_Ng_z(arguments->hit, n, i) * RTCRayN_dir_z(arguments->ray, n, i);
-        if (!stops(user, context, lane, RTCHitN_primID(arguments->hit, n, i), RTCHitN_u(arguments->hit, n, i), RTCHitN_v(arguments->hit, n, i), facing))
+        if (!stops(user, context, lane, RTCHitN_primID(arguments->hit, n, i), RTCHitN_u(arguments->hit, n, i),
+                   RTCHitN_v(arguments->hit, n, i), facing))
             arguments->valid[i] = 0;
     }
 }

@@ -11,15 +11,21 @@
 
 namespace kadr {
 
-struct ReleaseDevice { void operator()(RTCDevice device) const { rtcReleaseDevice(device); } };
-struct ReleaseScene { void operator()(RTCScene scene) const { rtcReleaseScene(scene); } };
-struct ReleaseGeometry { void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); } };
+struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct ReleaseGeometry {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
 using EmbreeDeviceHandle = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using EmbreeSceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 using EmbreeGeometryHandle = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
 
-/// What every query carries: Embree's own context first, then what the alpha filter needs. Embree hands it back as a pointer
-/// to its first member.
+/// What every query carries: Embree's own context first, then what the alpha filter needs. Embree hands it back as a
+/// pointer to its first member.
 struct QueryContext {
 #if RTC_VERSION_MAJOR >= 4
     RTCRayQueryContext rtc;
@@ -27,10 +33,10 @@ struct QueryContext {
 #else
     RTCIntersectContext rtc;
 #endif
-    unsigned key[8];            ///< hash per lane (ray.id), for stochastic coverage
-    float transmittance[8];     ///< per lane, of shadow rays: the product of (1 - coverage)
+    unsigned key[8];         ///< hash per lane (ray.id), for stochastic coverage
+    float transmittance[8];  ///< per lane, of shadow rays: the product of (1 - coverage)
     bool shadow = false;
-    bool keep_blend = false;    ///< closest hits stop at partial coverage (`direct` composites the layers)
+    bool keep_blend = false;  ///< closest hits stop at partial coverage (`direct` composites the layers)
 
     QueryContext() {
 #if RTC_VERSION_MAJOR >= 4

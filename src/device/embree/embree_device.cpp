@@ -38,7 +38,8 @@ private:
 /// TBB caps its workers at the cores there are; more threads than that have to be asked for before an arena starts.
 std::unique_ptr<tbb::global_control> allow_threads(int threads) {
     if (threads <= tbb::info::default_concurrency()) return nullptr;
-    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                 static_cast<std::size_t>(threads));
 }
 
 /// One thread's driver, results and counters.
@@ -51,17 +52,26 @@ struct Worker {
 
 class EmbreeDevice final : public Device {
 public:
-    EmbreeDevice(int threads, int width) : width_(width), limit_(allow_threads(threads)), arena_(threads > 0 ? threads : tbb::task_arena::automatic), device_(rtcNewDevice(nullptr)) {
+    EmbreeDevice(int threads, int width)
+        : width_(width),
+          limit_(allow_threads(threads)),
+          arena_(threads > 0 ? threads : tbb::task_arena::automatic),
+          device_(rtcNewDevice(nullptr)) {
         if (!device_) throw RenderError("cannot start Embree");
-        // Workers start now. Later, creating a thread would wait for the dynamic loader while the image module is opened in
-        // the background: 0.25 s before the first ray.
-        arena_.execute([] { tbb::parallel_for(0, 64, [](int) {}, tbb::simple_partitioner()); });
+        // Workers start now. Later, creating a thread would wait for the dynamic loader while the image module is
+        // opened in the background: 0.25 s before the first ray.
+        arena_.execute([] {
+            tbb::parallel_for(
+                0, 64, [](int) {}, tbb::simple_partitioner());
+        });
     }
 
     std::string name() const override {
-        return fmt::format("cpu (Embree {}.{}.{}, {} lane{}, {} thread{})", rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MAJOR),
-                           rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MINOR), rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_PATCH),
-                           width_, width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
+        return fmt::format("cpu (Embree {}.{}.{}, {} lane{}, {} thread{})",
+                           rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                           rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                           rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_VERSION_PATCH), width_,
+                           width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
     }
 
     void load(const Scene& scene, const Image* environment) override {
@@ -86,10 +96,12 @@ public:
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
         const kernels::Settings& settings = scene_->view().settings;
-        const int columns = (film.width() + kTileEdge - 1) / kTileEdge, rows = (film.height() + kTileEdge - 1) / kTileEdge;
+        const int columns = (film.width() + kTileEdge - 1) / kTileEdge,
+                  rows = (film.height() + kTileEdge - 1) / kTileEdge;
         tbb::enumerable_thread_specific<Worker> workers([&] {
             Worker worker;
-            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, scene_->requirements()) : make_portable_driver(settings.integrator, scene_->requirements()));
+            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, scene_->requirements())
+                                            : make_portable_driver(settings.integrator, scene_->requirements()));
             return worker;
         });
         std::atomic<int> done{0};
@@ -99,7 +111,8 @@ public:
                 const FlushDenormals flush;
                 render_tile(pass, (tile % columns) * kTileEdge, (tile / columns) * kTileEdge, film, workers.local());
                 const int finished = ++done;
-                if (pass.progress && finished % 16 == 0) pass.progress(static_cast<double>(finished) / (columns * rows));
+                if (pass.progress && finished % 16 == 0)
+                    pass.progress(static_cast<double>(finished) / (columns * rows));
             });
         });
         for (const Worker& worker : workers) {
@@ -187,6 +200,8 @@ int best_width() {
 #endif
 }
 
-std::unique_ptr<Device> make_embree_device(int threads, int width) { return std::make_unique<EmbreeDevice>(threads, width); }
+std::unique_ptr<Device> make_embree_device(int threads, int width) {
+    return std::make_unique<EmbreeDevice>(threads, width);
+}
 
 }  // namespace kadr

@@ -18,8 +18,8 @@ namespace {
 
 /// Repeated meshes are flattened as well while all copies together stay below this.
 constexpr std::uint64_t kMaxRepeatedTriangles = 1'000'000;
-/// Smallest size of a flattened mesh against its distance from the render origin: below it, floats relative to the origin
-/// would be too coarse for ray offsets, and the mesh keeps its own coordinates.
+/// Smallest size of a flattened mesh against its distance from the render origin: below it, floats relative to the
+/// origin would be too coarse for ray offsets, and the mesh keeps its own coordinates.
 constexpr double kMinRelativeSize = 1e-3;
 
 void check(RTCDevice device, const char* action) {
@@ -29,7 +29,9 @@ void check(RTCDevice device, const char* action) {
     throw RenderError(fmt::format("cannot {}: Embree reports error {}", action, static_cast<int>(error)));
 }
 
-kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+kernels::Vec3f to_float(const glm::dvec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
 
 /// Mean luminance of a texture, as an estimate of what a textured emitter sends out.
@@ -39,7 +41,9 @@ float average_luminance(const kernels::Texture* textures, const kernels::Texture
     float sum = 0;
     for (int y = 0; y < kSteps; ++y)
         for (int x = 0; x < kSteps; ++x) {
-            const kernels::Vec4f t = kernels::sample_texture<float>(textures, slot.texture, {(static_cast<float>(x) + 0.5f) / kSteps, (static_cast<float>(y) + 0.5f) / kSteps}, true);
+            const kernels::Vec4f t = kernels::sample_texture<float>(
+                textures, slot.texture,
+                {(static_cast<float>(x) + 0.5f) / kSteps, (static_cast<float>(y) + 0.5f) / kSteps}, true);
             sum += kernels::luminance(kernels::Vec3f{t.x, t.y, t.z});
         }
     return sum / (kSteps * kSteps);
@@ -48,16 +52,17 @@ float average_luminance(const kernels::Texture* textures, const kernels::Texture
 bool emits(const kernels::Material& m) { return !m.unlit && kernels::luminance(m.emission) > 0; }
 
 bool has_maps(const kernels::Material& m) {
-    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 || m.metallic_roughness_texture.texture >= 0 ||
-           m.normal_texture.texture >= 0 || m.emissive_texture.texture >= 0;
+    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 ||
+           m.metallic_roughness_texture.texture >= 0 || m.normal_texture.texture >= 0 ||
+           m.emissive_texture.texture >= 0;
 }
 
 }  // namespace
 
 struct EmbreeScene::PackedGeometry {
     std::vector<kernels::Vertex> vertices;
-    std::vector<kernels::Vec4f> tangents;   ///< empty: the source's
-    std::vector<unsigned> indices;          ///< empty: the source's
+    std::vector<kernels::Vec4f> tangents;  ///< empty: the source's
+    std::vector<unsigned> indices;         ///< empty: the source's
 
     /// A mesh in its own coordinates.
     explicit PackedGeometry(const GeometryData& source) {
@@ -73,8 +78,10 @@ struct EmbreeScene::PackedGeometry {
         const bool mirrored = glm::determinant(linear) < 0;
         const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
         allocate(source);
-        for (std::size_t i = 0; i < source.positions.size(); ++i) vertices[i].position = to_float(linear * to_double(source.positions[i]) + shift);
-        for (std::size_t i = 0; i < source.normals.size(); ++i) vertices[i].normal = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
+        for (std::size_t i = 0; i < source.positions.size(); ++i)
+            vertices[i].position = to_float(linear * to_double(source.positions[i]) + shift);
+        for (std::size_t i = 0; i < source.normals.size(); ++i)
+            vertices[i].normal = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
         tangents.resize(source.tangents.size());
         for (std::size_t i = 0; i < tangents.size(); ++i) {
             const kernels::Vec4f t = source.tangents[i];
@@ -107,7 +114,8 @@ private:
     }
 };
 
-EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment) : device_(device), scene_(scene) {
+EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment)
+    : device_(device), scene_(scene) {
     geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
     packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
@@ -124,11 +132,14 @@ void EmbreeScene::load_environment(const Image& image) {
     for (std::size_t i = 0; i < environment_texels_.size(); ++i) {
         const float* p = image.pixels.data() + i * channels;
         const auto clean = [](float x) { return std::isfinite(x) && x > 0 ? x : 0.0f; };
-        environment_texels_[i] = channels >= 3 ? kernels::Vec3f{clean(p[0]), clean(p[1]), clean(p[2])} : kernels::Vec3f{clean(p[0]), clean(p[0]), clean(p[0])};
+        environment_texels_[i] = channels >= 3 ? kernels::Vec3f{clean(p[0]), clean(p[1]), clean(p[2])}
+                                               : kernels::Vec3f{clean(p[0]), clean(p[0]), clean(p[0])};
     }
     environment_marginal_.resize(image.height + 1);
     environment_conditional_.resize(static_cast<std::size_t>(image.height) * (image.width + 1));
-    environment_map_.average_luminance = kernels::build_environment_tables(environment_texels_.data(), image.width, image.height, environment_marginal_.data(), environment_conditional_.data());
+    environment_map_.average_luminance =
+        kernels::build_environment_tables(environment_texels_.data(), image.width, image.height,
+                                          environment_marginal_.data(), environment_conditional_.data());
     environment_map_.texels = environment_texels_.data();
     environment_map_.width = image.width;
     environment_map_.height = image.height;
@@ -145,10 +156,12 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.camera = snapshot.camera;
     view_.camera.keys = camera_keys_.data();
     view_.camera.key_count = static_cast<int>(camera_keys_.size());
-    const bool same_geometry = have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
+    const bool same_geometry =
+        have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
     if (!same_geometry) {
         const std::vector<bool> flattened = choose_flattened(snapshot);
-        if (!have_frame_ || flattened != flattened_ || snapshot.render_origin != flat_origin_) build_flat(snapshot, flattened);
+        if (!have_frame_ || flattened != flattened_ || snapshot.render_origin != flat_origin_)
+            build_flat(snapshot, flattened);
         build_instances(snapshot, flattened);
         flattened_ = flattened;
         flat_origin_ = snapshot.render_origin;
@@ -175,7 +188,8 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
         const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->world_from_geometry[i];
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 4; ++column)
-                previous_matrices_[i].m[row][column] = static_cast<float>(m[column][row] - (column == 3 && !motions_[i].identity ? snapshot.render_origin[row] : 0.0));
+                previous_matrices_[i].m[row][column] = static_cast<float>(
+                    m[column][row] - (column == 3 && !motions_[i].identity ? snapshot.render_origin[row] : 0.0));
     }
     previous_camera_key_ = snapshot.previous->camera;
     view_.previous_matrices = previous_matrices_.data();
@@ -191,7 +205,9 @@ std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) c
     for (std::size_t i = 0; i < flattened.size(); ++i) {
         const SnapshotInstance& instance = snapshot.instances[i];
         const std::uint64_t triangles = scene_.geometries[instance.geometry].indices.size() / 3;
-        if (!instance.fixed || (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles)) continue;
+        if (!instance.fixed ||
+            (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles))
+            continue;
         const glm::dmat3 linear(instance.world_from_geometry);
         const double size = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
         const double distance = glm::length(glm::dvec3(instance.world_from_geometry[3]) - snapshot.render_origin);
@@ -206,8 +222,10 @@ EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geomet
         rtcSetGeometryIntersectFilterFunction(handle.get(), alpha_filter);
         rtcSetGeometryOccludedFilterFunction(handle.get(), alpha_filter);
     }
-    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices, 0, 12, geometry.triangle_count);
-    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.vertices, 0, sizeof(kernels::Vertex), geometry.vertex_count);
+    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry.indices, 0, 12,
+                               geometry.triangle_count);
+    rtcSetSharedGeometryBuffer(handle.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.vertices, 0,
+                               sizeof(kernels::Vertex), geometry.vertex_count);
     return handle;
 }
 
@@ -221,7 +239,8 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
     tbb::parallel_for(std::size_t{0}, flattened.size(), [&](std::size_t i) {
         if (!flattened[i] || snapshot.instances[i].mask == 0) return;
         const SnapshotInstance& instance = snapshot.instances[i];
-        baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], instance.world_from_geometry, snapshot.render_origin);
+        baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], instance.world_from_geometry,
+                                                     snapshot.render_origin);
     });
     for (std::size_t i = 0; i < baked_.size(); ++i) {
         if (!baked_[i]) continue;
@@ -231,7 +250,8 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
         const kernels::Geometry& geometry = geometries_.back();
         if (geometry.triangle_count == 0) continue;
         EmbreeGeometryHandle handle = make_triangles(geometry, instance.material);
-        flat_users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, index, instance.material, cull_backfaces_}));
+        flat_users_.push_back(
+            std::make_unique<GeometryUser>(GeometryUser{&view_, index, instance.material, cull_backfaces_}));
         rtcSetGeometryUserData(handle.get(), flat_users_.back().get());
         rtcCommitGeometry(handle.get());
         rtcAttachGeometryByID(flat_.get(), handle.get(), static_cast<unsigned>(i));
@@ -252,7 +272,8 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
     const kernels::Geometry& geometry = geometries_[geometry_index];
     if (geometry.triangle_count > 0) {
         EmbreeGeometryHandle triangles = make_triangles(geometry, material);
-        users_.push_back(std::make_unique<GeometryUser>(GeometryUser{&view_, geometry_index, material, cull_backfaces_}));
+        users_.push_back(
+            std::make_unique<GeometryUser>(GeometryUser{&view_, geometry_index, material, cull_backfaces_}));
         rtcSetGeometryUserData(triangles.get(), users_.back().get());
         rtcCommitGeometry(triangles.get());
         rtcAttachGeometry(handle.get(), triangles.get());
@@ -293,7 +314,8 @@ void EmbreeScene::add_instance(const SceneSnapshot& snapshot, std::size_t index)
     motion.identity = false;
     motion.count = static_cast<unsigned>(keys.linear ? keys.matrices.size() : keys.keys.size());
     if (keys.linear) {
-        motion.kind = keys.matrices.size() == 1 ? kernels::InstanceMotion::Kind::still : kernels::InstanceMotion::Kind::linear;
+        motion.kind =
+            keys.matrices.size() == 1 ? kernels::InstanceMotion::Kind::still : kernels::InstanceMotion::Kind::linear;
         motion.first = static_cast<unsigned>(matrices_.size());
         matrices_.insert(matrices_.end(), keys.matrices.begin(), keys.matrices.end());
     } else {
@@ -332,7 +354,8 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
         const kernels::Material& material = scene_.materials[snapshot.instances[i].material];
         if (!emits(material) || snapshot.instances[i].mask == 0) continue;
         const int texture = material.emissive_texture.texture;
-        if (!texture_means.count(texture)) texture_means[texture] = average_luminance(textures_.data(), material.emissive_texture);
+        if (!texture_means.count(texture))
+            texture_means[texture] = average_luminance(textures_.data(), material.emissive_texture);
         const double strength = kernels::luminance(material.emission) * texture_means[texture];
         if (!(strength > 0)) continue;
         instance_density_[i] = static_cast<float>(strength);
@@ -346,10 +369,12 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
         };
         const bool varies = texture >= 0 || motions_[i].kind != kernels::InstanceMotion::Kind::still;
         for (unsigned t = 0; t < geometry.triangle_count; ++t) {
-            const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]), c = place(geometry.indices[3 * t + 2]);
+            const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]),
+                             c = place(geometry.indices[3 * t + 2]);
             const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
             if (!(power > 0)) continue;
-            emissive_triangles_.push_back({to_float(a), to_float(b - a), to_float(c - a), material.emission, 0, static_cast<unsigned>(i), t, varies ? 1u : 0u});
+            emissive_triangles_.push_back({to_float(a), to_float(b - a), to_float(c - a), material.emission, 0,
+                                           static_cast<unsigned>(i), t, varies ? 1u : 0u});
             total += power;
             cumulative.push_back(total);
             places.emplace_back((a + b + c) / 3.0, power);
@@ -403,10 +428,12 @@ void EmbreeScene::set_lights(const SceneSnapshot& snapshot) {
 void EmbreeScene::set_requirements() {
     requirements_ = 0;
     for (const kernels::Instance& instance : instances_)
-        if (has_maps(scene_.materials[instance.material]) || geometries_[instance.geometry].colors) requirements_ |= kernels::requirement::kMaps;
+        if (has_maps(scene_.materials[instance.material]) || geometries_[instance.geometry].colors)
+            requirements_ |= kernels::requirement::kMaps;
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
     const kernels::LightSet& lights = view_.lights;
-    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map) requirements_ |= kernels::requirement::kEmitters;
+    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map)
+        requirements_ |= kernels::requirement::kEmitters;
 }
 
 }  // namespace kadr

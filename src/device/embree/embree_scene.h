@@ -16,7 +16,7 @@ namespace kadr {
 /// What the filter functions need of a geometry; Embree holds a pointer to it.
 struct GeometryUser {
     const kernels::SceneView* view = nullptr;
-    unsigned geometry = 0, material = 0;   ///< indices into the view's tables
+    unsigned geometry = 0, material = 0;  ///< indices into the view's tables
     bool cull = false;
 };
 
@@ -41,7 +41,7 @@ public:
     std::uint64_t moving_count() const { return moving_count_; }
 
 private:
-    struct PackedGeometry;   ///< vertices as the kernels fetch them, in mesh coordinates or flattened
+    struct PackedGeometry;  ///< vertices as the kernels fetch them, in mesh coordinates or flattened
 
     void load_environment(const Image& image);
     std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
@@ -78,13 +78,14 @@ private:
     kernels::EnvironmentMap environment_map_{};
     kernels::SceneView view_{};
 
-    std::vector<std::unique_ptr<PackedGeometry>> packed_;   ///< [geometry] in mesh coordinates; null until an instance needs it
-    std::vector<std::unique_ptr<PackedGeometry>> baked_;    ///< [instance] flattened
-    std::vector<std::unique_ptr<GeometryUser>> users_;                      ///< of mesh scenes
+    std::vector<std::unique_ptr<PackedGeometry>>
+        packed_;  ///< [geometry] in mesh coordinates; null until an instance needs it
+    std::vector<std::unique_ptr<PackedGeometry>> baked_;  ///< [instance] flattened
+    std::vector<std::unique_ptr<GeometryUser>> users_;    ///< of mesh scenes
     std::vector<std::unique_ptr<GeometryUser>> flat_users_;
-    std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_; ///< by geometry and material
+    std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_;  ///< by geometry and material
     EmbreeSceneHandle flat_, instanced_;
-    std::vector<bool> flattened_;          ///< of the frame before
+    std::vector<bool> flattened_;  ///< of the frame before
     glm::dvec3 flat_origin_{0};
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0, emitter_key_ = 0;

@@ -51,7 +51,8 @@ MotionKeys motion_keys(const MotionFrames& motion, std::size_t instance) {
     const kernels::TransformHeader header = motion.headers[instance];
     const bool srt = motion.type == MotionFrames::Type::srt;
     MotionKeys result;
-    result.linear = header.frame_count == 1 || (header.frame_count == 2 && instance < motion.linear.size() && motion.linear[instance]);
+    result.linear = header.frame_count == 1 ||
+                    (header.frame_count == 2 && instance < motion.linear.size() && motion.linear[instance]);
     for (unsigned k = header.first_frame; k < header.first_frame + header.frame_count; ++k) {
         if (result.linear)
             result.matrices.push_back(srt ? kernels::compose(key_of(motion.srt[k])) : matrix_of(motion.matrices[k]));

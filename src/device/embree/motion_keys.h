@@ -10,7 +10,7 @@ namespace kadr {
 
 /// The motion frames of one instance as Embree and the kernels take them.
 struct MotionKeys {
-    bool linear = true;                           ///< one or two matrices; decomposed keys otherwise
+    bool linear = true;  ///< one or two matrices; decomposed keys otherwise
     std::vector<kernels::Affine> matrices;
     std::vector<kernels::TransformKey> keys;
 };

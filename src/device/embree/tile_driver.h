@@ -1,10 +1,11 @@
 #pragma once
 
-// The CPU's driver: one source for one lane and for eight. A batch of paths advances bounce by bounce; rays go to Embree in
-// packets, hits are compressed into a small ring so that shading always has full lanes, and shadow rays wait in a second ring.
+// The CPU's driver: one source for one lane and for eight. A batch of paths advances bounce by bounce; rays go to
+// Embree in packets, hits are compressed into a small ring so that shading always has full lanes, and shadow rays wait
+// in a second ring.
 //
-// The order of additions to one path's radiance is fixed (light that its ray meets, emission, then the shadow ray, bounce by
-// bounce), so a pixel does not depend on its neighbours, on the number of threads or on the order of tiles.
+// The order of additions to one path's radiance is fixed (light that its ray meets, emission, then the shadow ray,
+// bounce by bounce), so a pixel does not depend on its neighbours, on the number of threads or on the order of tiles.
 
 #include <utility>
 
@@ -13,8 +14,8 @@
 #include "kernels/integrator/direct.h"
 #include "kernels/integrator/path.h"
 
-// Compiled once per instruction set: everything lives in a namespace of its own, so that the linker never takes an AVX2 body
-// for a portable one.
+// Compiled once per instruction set: everything lives in a namespace of its own, so that the linker never takes an AVX2
+// body for a portable one.
 namespace kadr::KADR_DRIVER_NAMESPACE {
 
 using namespace kernels;
@@ -68,9 +69,42 @@ inline void store_compressed(float* p, F x, unsigned mask) {
 }
 
 /// Calls f with every member of a path state and of its slot, in the order of the columns.
-enum PathField { kOriginX, kOriginY, kOriginZ, kDirectionX, kDirectionY, kDirectionZ, kTime, kBetaX, kBetaY, kBetaZ, kPdf, kLightWeight, kKey, kSample, kBounces, kSlot, kPathFields };
+enum PathField {
+    kOriginX,
+    kOriginY,
+    kOriginZ,
+    kDirectionX,
+    kDirectionY,
+    kDirectionZ,
+    kTime,
+    kBetaX,
+    kBetaY,
+    kBetaZ,
+    kPdf,
+    kLightWeight,
+    kKey,
+    kSample,
+    kBounces,
+    kSlot,
+    kPathFields
+};
 enum HitField { kInstance = kPathFields, kPrimitive, kU, kV, kDistance, kHitFields };
-enum ShadowField { kShadowOriginX, kShadowOriginY, kShadowOriginZ, kShadowDirectionX, kShadowDirectionY, kShadowDirectionZ, kShadowDistance, kShadowTime, kShadowX, kShadowY, kShadowZ, kShadowKey, kShadowSlot, kShadowFields };
+enum ShadowField {
+    kShadowOriginX,
+    kShadowOriginY,
+    kShadowOriginZ,
+    kShadowDirectionX,
+    kShadowDirectionY,
+    kShadowDirectionZ,
+    kShadowDistance,
+    kShadowTime,
+    kShadowX,
+    kShadowY,
+    kShadowZ,
+    kShadowKey,
+    kShadowSlot,
+    kShadowFields
+};
 
 template <class F, class C>
 inline PathState<F> load_path(const C& c, int at, UInt<F>& slot) {
@@ -185,7 +219,8 @@ private:
             }
             const Vec2<F> film{F(x) + F(0.5f) + offset.x, F(y) + F(0.5f) + offset.y};
             PathState<F> path;
-            camera_ray(scene.camera, scene.settings.width, scene.settings.height, film, time, lens, path.origin, path.direction);
+            camera_ray(scene.camera, scene.settings.width, scene.settings.height, film, time, lens, path.origin,
+                       path.direction);
             path.time = time;
             path.beta = {F(1.0f), F(1.0f), F(1.0f)};
             path.bsdf_pdf = F(0.0f);
@@ -238,7 +273,11 @@ private:
             if (scene.lights.visible_count > 0) {
                 const Vec3<F> L = visible_lights(scene, path, hit.distance, active);
                 const unsigned seen = bits(active & (max_component(L) > F(0.0f)));
-                if (seen) add(slot, clamp_contribution(scene.settings, (path.bounces & UInt<F>(0xffu)) < UInt<F>(2u), L * path.beta), seen);
+                if (seen)
+                    add(slot,
+                        clamp_contribution(scene.settings, (path.bounces & UInt<F>(0xffu)) < UInt<F>(2u),
+                                           L * path.beta),
+                        seen);
             }
         }
         const unsigned missed = bits(active & !found);
@@ -269,12 +308,19 @@ private:
         for (; mask; mask &= mask - 1) result_->radiance[0][lane(slot, __builtin_ctz(mask))] = __builtin_nanf("");
     }
 
-    void log(Vec3<F> origin, Vec3<F> direction, F time, F distance, unsigned lanes, bool shadow, bool flat, bool camera) const {
+    void log(Vec3<F> origin, Vec3<F> direction, F time, F distance, unsigned lanes, bool shadow, bool flat,
+             bool camera) const {
         const unsigned packet = N == 8 && flat ? static_cast<unsigned>(__builtin_popcount(lanes)) : 1;
         for (unsigned todo = lanes, left = packet; todo; todo &= todo - 1, left -= packet > 1 ? 1 : 0) {
             const int i = __builtin_ctz(todo);
-            job_->log(job_->log_user, {{lane(origin.x, i), lane(origin.y, i), lane(origin.z, i)}, {lane(direction.x, i), lane(direction.y, i), lane(direction.z, i)},
-                                       lane(time, i), lane(distance, i), shadow, flat, camera, static_cast<std::uint8_t>(left)});
+            job_->log(job_->log_user, {{lane(origin.x, i), lane(origin.y, i), lane(origin.z, i)},
+                                       {lane(direction.x, i), lane(direction.y, i), lane(direction.z, i)},
+                                       lane(time, i),
+                                       lane(distance, i),
+                                       shadow,
+                                       flat,
+                                       camera,
+                                       static_cast<std::uint8_t>(left)});
         }
     }
 
@@ -283,19 +329,23 @@ private:
         QueryContext context;
         context.keep_blend = kIntegrator == IntegratorKind::direct;
         if constexpr ((R & requirement::kMaps) != 0)
-            for (int i = 0; i < N; ++i) context.key[i] = lane(path.sampler_key, i) ^ (lane(path.sample, i) * 0x9E3779B9u) ^ (lane(path.bounces, i) * 0x85EBCA6Bu);
+            for (int i = 0; i < N; ++i)
+                context.key[i] = lane(path.sampler_key, i) ^ (lane(path.sample, i) * 0x9E3779B9u) ^
+                                 (lane(path.bounces, i) * 0x85EBCA6Bu);
         hit.distance = F(kInfinity);
         hit.instance = Int<F>(0);
         hit.primitive = Int<F>(0);
         hit.u = hit.v = F(0.0f);
-        if (job_->log && job_->flat) log(path.origin, path.direction, path.time, hit.distance, lanes, false, true, camera);
+        if (job_->log && job_->flat)
+            log(path.origin, path.direction, path.time, hit.distance, lanes, false, true, camera);
         if constexpr (N == 8) {
             if (job_->flat) trace_packet(path, lanes, context, camera, hit);
         } else {
             if (job_->flat) trace_single(job_->flat, path, lanes, context, camera, hit);
         }
         if constexpr ((R & requirement::kTransforms) != 0) {
-            if (job_->log && job_->instanced) log(path.origin, path.direction, path.time, hit.distance, lanes, false, false, camera);
+            if (job_->log && job_->instanced)
+                log(path.origin, path.direction, path.time, hit.distance, lanes, false, false, camera);
             if (job_->instanced) trace_single(job_->instanced, path, lanes, context, camera, hit);
         }
     }
@@ -352,7 +402,8 @@ private:
         ray.flags = 0;
     }
 
-    static void trace_single(RTCScene target, const PathState<F>& path, unsigned lanes, QueryContext& context, bool camera, Hit<F>& hit) {
+    static void trace_single(RTCScene target, const PathState<F>& path, unsigned lanes, QueryContext& context,
+                             bool camera, Hit<F>& hit) {
         for (; lanes; lanes &= lanes - 1) {
             const int i = __builtin_ctz(lanes);
             RTCRayHit ray;
@@ -391,7 +442,8 @@ private:
             queue_shadow(vertex.shadow, path, slot);
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
         } else {
-            const DirectResult<F> vertex = shade_direct<F, R>(scene, path, hit, active, [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
+            const DirectResult<F> vertex = shade_direct<F, R>(
+                scene, path, hit, active, [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
             add(slot, vertex.emitted, bits(active));
             surface(path, hit, vertex.albedo, vertex.normal, slot, active);
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
@@ -399,7 +451,8 @@ private:
     }
 
     /// Data layers and coverage of the first hit.
-    void surface(const PathState<F>& path, const Hit<F>& hit, Vec3<F> albedo, Vec3<F> normal, UInt<F> slot, Mask<F> active) {
+    void surface(const PathState<F>& path, const Hit<F>& hit, Vec3<F> albedo, Vec3<F> normal, UInt<F> slot,
+                 Mask<F> active) {
         for (unsigned todo = bits(active & (path.bounces == UInt<F>(0u))); todo; todo &= todo - 1) {
             const int i = __builtin_ctz(todo);
             const unsigned s = lane(slot, i);
@@ -413,7 +466,9 @@ private:
             result_->normal[2][s] = lane(normal.z, i);
             result_->depth[s] = lane(hit.distance, i) * view_cosine(path, i);
             if (job_->scene->previous_matrices) {
-                const Vec2f moved = motion(static_cast<unsigned>(lane(hit.instance, i)), static_cast<unsigned>(lane(hit.primitive, i)), lane(hit.u, i), lane(hit.v, i));
+                const Vec2f moved =
+                    motion(static_cast<unsigned>(lane(hit.instance, i)), static_cast<unsigned>(lane(hit.primitive, i)),
+                           lane(hit.u, i), lane(hit.v, i));
                 result_->motion[0][s] = moved.x;
                 result_->motion[1][s] = moved.y;
             }
@@ -425,14 +480,17 @@ private:
         const SceneView& scene = *job_->scene;
         const Geometry& g = scene.geometries[scene.instances[instance].geometry];
         const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
-        const Vec3f p = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position, g.vertices[index[2]].position, u, v);
+        const Vec3f p = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position,
+                                    g.vertices[index[2]].position, u, v);
         const auto place = [&](const Affine& a) {
-            return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3], a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
+            return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3],
+                         a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
                          a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
         };
         const int width = scene.settings.width, height = scene.settings.height;
         const Vec2f now = project<float>(scene.camera, width, height, place(transform_at(scene, instance, 0.0f)), 0.0f);
-        const Vec2f before = project<float>(scene.previous_camera, width, height, place(scene.previous_matrices[instance]), 0.0f);
+        const Vec2f before =
+            project<float>(scene.previous_camera, width, height, place(scene.previous_matrices[instance]), 0.0f);
         return {now.x - before.x, now.y - before.y};
     }
 
@@ -440,10 +498,13 @@ private:
     float view_cosine(const PathState<F>& path, int i) const {
         const Camera& camera = job_->scene->camera;
         const float position = lane(path.time, i) * static_cast<float>(camera.key_count - 1);
-        const int k = position < static_cast<float>(camera.key_count - 1) ? static_cast<int>(position) : camera.key_count - 1;
+        const int k =
+            position < static_cast<float>(camera.key_count - 1) ? static_cast<int>(position) : camera.key_count - 1;
         const float* q = camera.keys[k].rotation;  // the nearer key: within the motion tolerance of the true axis
-        const Vec3f axis{-2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]), -(1 - 2 * (q[0] * q[0] + q[1] * q[1]))};
-        return axis.x * lane(path.direction.x, i) + axis.y * lane(path.direction.y, i) + axis.z * lane(path.direction.z, i);
+        const Vec3f axis{-2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
+                         -(1 - 2 * (q[0] * q[0] + q[1] * q[1]))};
+        return axis.x * lane(path.direction.x, i) + axis.y * lane(path.direction.y, i) +
+               axis.z * lane(path.direction.z, i);
     }
 
     void queue_shadow(const ShadowRay<F>& ray, const PathState<F>& path, UInt<F> slot) {
@@ -499,17 +560,20 @@ private:
         }
         if constexpr ((R & requirement::kTransforms) != 0) {
             if (job_->log && job_->instanced) log(origin, direction, time, distance, open, true, false, false);
-            if (job_->instanced) open = shadow_single(job_->instanced, origin, direction, time, distance, open, context);
+            if (job_->instanced)
+                open = shadow_single(job_->instanced, origin, direction, time, distance, open, context);
         }
         if (open == 0) return;
         F transmittance(1.0f);
         if constexpr ((R & requirement::kMaps) != 0) {
             for (int i = 0; i < N; ++i) set_lane(transmittance, i, context.transmittance[i]);
         }
-        add(load<UInt<F>>(shadows_.data[kShadowSlot]), Vec3<F>{f(kShadowX), f(kShadowY), f(kShadowZ)} * transmittance, open);
+        add(load<UInt<F>>(shadows_.data[kShadowSlot]), Vec3<F>{f(kShadowX), f(kShadowY), f(kShadowZ)} * transmittance,
+            open);
     }
 
-    static unsigned shadow_single(RTCScene target, Vec3<F> origin, Vec3<F> direction, F time, F distance, unsigned open, QueryContext& context) {
+    static unsigned shadow_single(RTCScene target, Vec3<F> origin, Vec3<F> direction, F time, F distance, unsigned open,
+                                  QueryContext& context) {
         unsigned left = 0;
         for (; open; open &= open - 1) {
             const int i = __builtin_ctz(open);

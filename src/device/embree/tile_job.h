@@ -10,17 +10,17 @@
 namespace kadr {
 
 /// Paths that a tile keeps in flight: enough to fill eight lanes at every depth, few enough for the cache.
-inline constexpr int kTileEdge = 16;              ///< pixels
-inline constexpr int kSamplesPerBatch = 4;        ///< of every pixel of the tile
+inline constexpr int kTileEdge = 16;        ///< pixels
+inline constexpr int kSamplesPerBatch = 4;  ///< of every pixel of the tile
 inline constexpr int kPathsPerBatch = kTileEdge * kTileEdge * kSamplesPerBatch;
 
 /// What a batch leaves behind, one slot a path: slot = (pixel in the tile) * samples in the batch + sample.
 struct alignas(64) TileResult {
     float radiance[3][kPathsPerBatch];
-    float weight[kPathsPerBatch];     ///< of the pixel filter (negative lobes); 1 otherwise
+    float weight[kPathsPerBatch];  ///< of the pixel filter (negative lobes); 1 otherwise
     float alpha[kPathsPerBatch];
     float albedo[3][kPathsPerBatch], normal[3][kPathsPerBatch];
-    float depth[kPathsPerBatch];      ///< metres along the view axis; infinity for the background
+    float depth[kPathsPerBatch];  ///< metres along the view axis; infinity for the background
     float motion[2][kPathsPerBatch];
 };
 
@@ -32,21 +32,21 @@ struct TileCounters {
 struct LoggedRay {
     float origin[3], direction[3], time, distance;
     bool shadow, flat, camera;
-    std::uint8_t packet;   ///< rays of the packet that follow this one, itself included; 1: a single ray
+    std::uint8_t packet;  ///< rays of the packet that follow this one, itself included; 1: a single ray
 };
 
 /// What a driver needs of the frame.
 struct TileJob {
     const kernels::SceneView* scene = nullptr;
-    RTCScene flat = nullptr;           ///< geometry relative to the render origin; null when empty
-    RTCScene instanced = nullptr;      ///< instances; null when empty
+    RTCScene flat = nullptr;       ///< geometry relative to the render origin; null when empty
+    RTCScene instanced = nullptr;  ///< instances; null when empty
     const kernels::FilterTable* filter = nullptr;
-    int first_sample = 0, sample_count = 0;   ///< of this batch
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;       ///< the tile's pixels
+    int first_sample = 0, sample_count = 0;  ///< of this batch
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;      ///< the tile's pixels
     bool surface_layers = false;
-    void (*log)(void* user, const LoggedRay& ray) = nullptr;   ///< null: do not record
+    void (*log)(void* user, const LoggedRay& ray) = nullptr;  ///< null: do not record
     void* log_user = nullptr;
-    bool centred = false;                     ///< one sample in all: the pixel's centre, a pinhole, the shutter's opening
+    bool centred = false;  ///< one sample in all: the pixel's centre, a pinhole, the shutter's opening
 };
 
 /// Renders one batch of a tile; one instance per thread (it owns the queues).
