@@ -68,11 +68,10 @@ struct Geometry {
     unsigned vertex_count, triangle_count;
 };
 
-/// Shading's view of one instance. Both matrices are row-major 3x4 / 3x3; identity for flattened geometry.
+/// Shading's view of one instance.
 struct Instance {
     unsigned geometry, material;
-    unsigned id;  ///< stable over frames (AOVs)
-    int emitter;  ///< index into Lights::mesh_emitters; -1: does not emit
+    unsigned id;  ///< stable over frames
 };
 
 enum class LightKind : unsigned char { directional, point, spot, area };

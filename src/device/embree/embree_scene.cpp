@@ -293,7 +293,7 @@ void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vect
     unsigned next_baked = static_cast<unsigned>(scene_.geometries.size());
     for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
         const SnapshotInstance& source = snapshot.instances[i];
-        instances_[i] = {source.geometry, source.material, source.id, -1};
+        instances_[i] = {source.geometry, source.material, source.id};
         if (flattened[i]) {
             if (!baked_[i]) continue;
             instances_[i].geometry = next_baked++;
