@@ -197,6 +197,12 @@ template <int N> SHARED_FN void set_lane(WideInt<N>& a, int i, int x) { a.v[i] =
 template <int N> SHARED_FN void set_lane(WideUInt<N>& a, int i, unsigned x) { a.v[i] = x; }
 template <int N> SHARED_FN void set_lane(WideMask<N>& a, int i, bool x) { a.v[i] = x ? -1 : 0; }
 
+/// kLanes<F> consecutive values. The address is aligned to their size (4 * lanes bytes).
+template <class F> struct Memory {
+    SHARED_FN static F load(const float* p) { return *reinterpret_cast<const F*>(p); }
+    SHARED_FN static void store(float* p, F x) { *reinterpret_cast<F*>(p) = x; }
+};
+
 /// Eight values from each of kLanes<F> places: out[k] of lane i is rows[i][k].
 template <class F>
 SHARED_FN void load_rows(const float* const* rows, F* out) {
