@@ -83,7 +83,7 @@ NodeRig::NodeRig(const Shot& shot, const Scene& scene, const std::vector<std::ve
     for (const int node : order_) {
         const int parent = scene.nodes[index(node)].parent;
         moving_[index(node)] = animates(node) || (parent >= 0 ? moving_[index(parent)] : files_[index(file_[index(node)])].moves);
-        local_[index(node)] = local_transform(node, 0);
+        local_[index(node)] = local_transform(node, 0, 0);
         const glm::dmat4 above = parent >= 0 ? world_[index(parent)] : scene_transform(file_[index(node)], 0);
         world_[index(node)] = above * local_[index(node)];
     }
@@ -153,34 +153,34 @@ void NodeRig::bind_channels(const NodeChannels& channels) {
 
 glm::dmat4 NodeRig::scene_transform(int file, double time_s) const { return kadr::evaluate(*files_[index(file)].transform, time_s); }
 
-glm::dmat4 NodeRig::local_transform(int node, double time_s) const {
+glm::dmat4 NodeRig::local_transform(int node, double time_s, double clip_offset_s) const {
     const int slot = animated_index_[index(node)];
     const Node& source = scene_->nodes[index(node)];
     if (slot < 0) return source.matrix ? *source.matrix : from_parts(source.translation, source.rotation, source.scale);
     const Animated& a = animated_[index(slot)];
-    const double time = files_[index(file_[index(node)])].clip_time(time_s);
+    const double time = files_[index(file_[index(node)])].clip_time(time_s, clip_offset_s);
     return from_parts(a.translation_track ? kadr::evaluate(*a.translation_track, time) : a.translation,
                       a.rotation_track ? kadr::evaluate(*a.rotation_track, time) : a.rotation,
                       a.scale_track ? kadr::evaluate(*a.scale_track, time) : a.scale);
 }
 
-glm::dmat4 NodeRig::node_transform(int node, double time_s) const {
+glm::dmat4 NodeRig::node_transform(int node, double time_s, double clip_offset_s) const {
     glm::dmat4 result(1);
     for (; moves(node); node = scene_->nodes[index(node)].parent) {
-        result = (animates(node) ? local_transform(node, time_s) : local_[index(node)]) * result;
+        result = (animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)]) * result;
         if (scene_->nodes[index(node)].parent < 0) return scene_transform(file_[index(node)], time_s) * result;
     }
     return world_[index(node)] * result;
 }
 
-std::vector<glm::dmat4> NodeRig::all_transforms(double time_s) const {
+std::vector<glm::dmat4> NodeRig::all_transforms(double time_s, double clip_offset_s) const {
     std::vector<glm::dmat4> world = world_;
     std::vector<glm::dmat4> above;
     for (std::size_t f = 0; f < files_.size(); ++f) above.push_back(scene_transform(static_cast<int>(f), time_s));
     for (const int node : order_) {
         if (!moves(node)) continue;
         const int parent = scene_->nodes[index(node)].parent;
-        const glm::dmat4 local = animates(node) ? local_transform(node, time_s) : local_[index(node)];
+        const glm::dmat4 local = animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
         world[index(node)] = (parent >= 0 ? world[index(parent)] : above[index(file_[index(node)])]) * local;
     }
     return world;
@@ -207,13 +207,13 @@ NodeRig::Selection NodeRig::select(std::span<const int> nodes) const {
     return selection;
 }
 
-void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world) const {
+void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world, double clip_offset_s) const {
     world.resize(selection.nodes.size());
     int file = -1;
     glm::dmat4 above(1);
     for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
         const int node = selection.nodes[slot];
-        const glm::dmat4 local = animates(node) ? local_transform(node, time_s) : local_[index(node)];
+        const glm::dmat4 local = animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
         const int parent = scene_->nodes[index(node)].parent;
         if (selection.parent_slot[slot] >= 0) {
             world[slot] = world[index(selection.parent_slot[slot])] * local;
@@ -226,7 +226,7 @@ void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<gl
     }
 }
 
-NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s) const {
+NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s, double clip_offset_s) const {
     Activity own;
     std::vector<double> times;  // in [0, 1] over the interval
     const auto add_keys = [&](const std::vector<double>& keys, double from, double to) {
@@ -236,7 +236,7 @@ NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s) 
     if (const int slot = animated_index_[index(node)]; slot >= 0) {
         const Animated& a = animated_[index(slot)];
         // A clip may run backwards: the tracks are asked over the interval in ascending order.
-        const double from = file.clip_time(begin_s), to = file.clip_time(end_s);
+        const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
         const double low = std::min(from, to), high = std::max(from, to);
         if (a.translation_track) add_keys(key_times(*a.translation_track, low, high), from, to);
         if (a.scale_track) add_keys(key_times(*a.scale_track, low, high), from, to);
@@ -254,11 +254,11 @@ NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s) 
     return own;
 }
 
-std::vector<NodeRig::Activity> NodeRig::activity(const Selection& selection, double begin_s, double end_s) const {
+std::vector<NodeRig::Activity> NodeRig::activity(const Selection& selection, double begin_s, double end_s, double clip_offset_s) const {
     std::vector<Activity> all;
     all.reserve(selection.nodes.size());
     for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
-        Activity own = own_activity(selection.nodes[slot], begin_s, end_s);
+        Activity own = own_activity(selection.nodes[slot], begin_s, end_s, clip_offset_s);
         if (selection.parent_slot[slot] >= 0) {
             const Activity& above = all[index(selection.parent_slot[slot])];
             own.turn_rad += above.turn_rad;
@@ -271,7 +271,7 @@ std::vector<NodeRig::Activity> NodeRig::activity(const Selection& selection, dou
     return all;
 }
 
-std::vector<double> NodeRig::discontinuities(double begin_s, double end_s) const {
+std::vector<double> NodeRig::discontinuities(double begin_s, double end_s, double clip_offset_s) const {
     std::vector<double> times;
     const auto add = [&times](const auto& track, double from, double to) { append(times, kadr::discontinuities(track, from, to)); };
     for (const FileMotion& file : files_) {
@@ -286,28 +286,28 @@ std::vector<double> NodeRig::discontinuities(double begin_s, double end_s) const
         if (animated_index_[index(node)] < 0 || !reachable(node)) continue;
         const Animated& a = animated_[index(animated_index_[index(node)])];
         const FileMotion& file = files_[index(file_[index(node)])];
-        const double from = file.clip_time(begin_s), to = file.clip_time(end_s);
+        const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
         const std::size_t known = times.size();
         if (a.translation_track) add(*a.translation_track, std::min(from, to), std::max(from, to));
         if (a.rotation_track) add(*a.rotation_track, std::min(from, to), std::max(from, to));
         if (a.scale_track) add(*a.scale_track, std::min(from, to), std::max(from, to));
-        for (std::size_t i = known; i < times.size(); ++i) times[i] = (times[i] - file.start_s) / file.speed;
+        for (std::size_t i = known; i < times.size(); ++i) times[i] = file.shot_time(times[i], clip_offset_s);
     }
     return times;
 }
 
-std::vector<double> NodeRig::key_times_of(int node, double begin_s, double end_s) const {
+std::vector<double> NodeRig::key_times_of(int node, double begin_s, double end_s, double clip_offset_s) const {
     std::vector<double> times;
     for (; node >= 0; node = scene_->nodes[index(node)].parent) {
         const FileMotion& file = files_[index(file_[index(node)])];
         if (const int slot = animated_index_[index(node)]; slot >= 0) {
             const Animated& a = animated_[index(slot)];
-            const double from = file.clip_time(begin_s), to = file.clip_time(end_s);
+            const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
             const std::size_t known = times.size();
             if (a.translation_track) append(times, key_times(*a.translation_track, std::min(from, to), std::max(from, to)));
             if (a.rotation_track) append(times, key_times(*a.rotation_track, std::min(from, to), std::max(from, to)));
             if (a.scale_track) append(times, key_times(*a.scale_track, std::min(from, to), std::max(from, to)));
-            for (std::size_t i = known; i < times.size(); ++i) times[i] = (times[i] - file.start_s) / file.speed;
+            for (std::size_t i = known; i < times.size(); ++i) times[i] = file.shot_time(times[i], clip_offset_s);
         }
         if (scene_->nodes[index(node)].parent < 0) append(times, key_times(*file.transform, begin_s, end_s));
     }

@@ -12,6 +12,9 @@ namespace kadr {
 
 /// The node trees of a shot's scenes, laid out for evaluation at many times: parents before children, tracks that
 /// never change folded into constants, and only what moves evaluated anew.
+///
+/// `clip_offset_s` of the functions below is added to the shot time before it becomes the time of a clip: copies of a
+/// scene play its clips earlier or later with it. It shifts clips alone; tracks of the shot keep to the shot's time.
 class NodeRig {
 public:
     /// @param clips  indices into Scene::clips that play, one list per scene file
@@ -22,8 +25,8 @@ public:
     int file_of(int node) const { return file_[index(node)]; }
 
     glm::dmat4 scene_transform(int file, double time_s) const;  ///< world_from_scene
-    glm::dmat4 node_transform(int node, double time_s) const;   ///< world_from_node
-    std::vector<glm::dmat4> all_transforms(double time_s) const;
+    glm::dmat4 node_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< world_from_node
+    std::vector<glm::dmat4> all_transforms(double time_s, double clip_offset_s = 0) const;
 
     /// Some nodes and their moving ancestors, parents first.
     struct Selection {
@@ -34,7 +37,7 @@ public:
     };
     Selection select(std::span<const int> nodes) const;
     /// World transforms, parallel to selection.nodes.
-    void evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world) const;
+    void evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world, double clip_offset_s = 0) const;
 
     /// How lively each selected node is during (begin, end): what its own tracks and those above it do.
     struct Activity {
@@ -42,12 +45,12 @@ public:
         int keys = 0;         ///< keys inside the interval
         int grid = 1;         ///< even segments on whose ends those keys fall; 1 where there is no such grid
     };
-    std::vector<Activity> activity(const Selection& selection, double begin_s, double end_s) const;
+    std::vector<Activity> activity(const Selection& selection, double begin_s, double end_s, double clip_offset_s = 0) const;
 
     /// Times inside (begin, end) where a transform jumps.
-    std::vector<double> discontinuities(double begin_s, double end_s) const;
+    std::vector<double> discontinuities(double begin_s, double end_s, double clip_offset_s = 0) const;
     /// Keys inside (begin, end) of a node and everything above it.
-    std::vector<double> key_times_of(int node, double begin_s, double end_s) const;
+    std::vector<double> key_times_of(int node, double begin_s, double end_s, double clip_offset_s = 0) const;
 
 private:
     /// A node that a clip animates; a null track leaves the constant.
@@ -62,7 +65,8 @@ private:
         const TransformTrack* transform = nullptr;
         bool moves = false;
         double start_s = 0, speed = 1;
-        double clip_time(double time_s) const { return start_s + speed * time_s; }
+        double clip_time(double time_s, double offset_s) const { return start_s + speed * (time_s + offset_s); }
+        double shot_time(double clip_s, double offset_s) const { return (clip_s - start_s) / speed - offset_s; }
     };
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -70,8 +74,8 @@ private:
     void bind_clips(const std::vector<std::vector<int>>& clips);
     void bind_channels(const NodeChannels& channels);
     bool animates(int node) const;  ///< whether a clip changes its own transform over time
-    glm::dmat4 local_transform(int node, double time_s) const;
-    Activity own_activity(int node, double begin_s, double end_s) const;
+    glm::dmat4 local_transform(int node, double time_s, double clip_offset_s) const;
+    Activity own_activity(int node, double begin_s, double end_s, double clip_offset_s) const;
 
     const Scene* scene_;
     std::vector<FileMotion> files_;

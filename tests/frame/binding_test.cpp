@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "frame/bindings.h"
 #include "stage.h"
 
 namespace kadr {
@@ -158,6 +159,26 @@ TEST(Binding, PlaysClipsFromTheirStartAtTheirSpeed) {
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(3)[0][3].x, 5);
     stage.shot.scenes[0].clips = SceneSpec::Clips::none;
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(3)[0][3].x, 0);
+}
+
+TEST(Binding, AnOffsetShiftsTheTimeOfClipsAlone) {
+    Stage stage;
+    const int parent = stage.add_node("parent"), child = stage.add_node("child", parent);
+    stage.animate(child).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {1, {0, 0, 0}}, {10, {9, 0, 0}}});
+    stage.shot.scenes[0].transform.translate = track<glm::dvec3>({{0, {0, 0, 0}}, {10, {0, 10, 0}}});
+    stage.shot.scenes[0].clip_speed = 2;
+    const BoundShot bound = stage.bind();
+    const NodeRig& rig = bound.bindings().rig;
+    EXPECT_LT(glm::distance(glm::dvec3(rig.node_transform(child, 1, 0.5)[3]), glm::dvec3(2, 1, 0)), 1e-14);
+    EXPECT_EQ(rig.all_transforms(1, 0.5)[static_cast<std::size_t>(child)], rig.node_transform(child, 1, 0.5));
+    const NodeRig::Selection selection = rig.select(std::vector<int>{child});
+    std::vector<glm::dmat4> world;
+    rig.evaluate(selection, 1, world, 0.5);
+    EXPECT_EQ(world[static_cast<std::size_t>(selection.slot_of(child))], rig.node_transform(child, 1, 0.5));
+    EXPECT_THAT(rig.key_times_of(child, 0.1, 4), testing::ElementsAre(0.5));
+    EXPECT_THAT(rig.key_times_of(child, 0.1, 4, -0.25), testing::ElementsAre(0.25, 0.75));
+    EXPECT_EQ(rig.activity(selection, 0, 1)[1].keys, 1);
+    EXPECT_EQ(rig.activity(selection, 0, 1, 0.75)[1].keys, 0);
 }
 
 TEST(Binding, ChainsTransformsInDouble) {
