@@ -177,9 +177,10 @@ void Parser::add_preview() {
 
 void Parser::add_check() {
     CLI::App* app = add(Command::check, "check", "all that can be known before rendering; writes nothing",
-                        "kadr check shots/turntable.yaml shots/pan.yaml");
+                        "kadr check shots/turntable.yaml shots/pan.yaml --verbose");
     app->add_option("SHOT", raw_.shots, kShotHelp)->required();
     add_set(app);
+    app->add_flag("--verbose", invocation_.verbose, "print the timeline: frames, shutter, tracks, cuts");
     app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
 

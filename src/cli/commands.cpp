@@ -40,13 +40,19 @@ int run_preview(const Invocation& invocation) {
     return kDone;
 }
 
+void print_checked(const Invocation& invocation, const std::filesystem::path& shot, const CheckReport& report) {
+    if (!invocation.json) return print(fmt::format("{}: ok\n{}", shot.string(), report.details));
+    if (invocation.verbose) print(json_line({{"event", "details"}, {"file", shot.string()}, {"text", report.details}}));
+}
+
 int run_check(const Invocation& invocation) {
     const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, false);
     std::vector<Diagnostic> problems;
     for (const std::filesystem::path& shot : invocation.shots) {
         try {
-            for (const Diagnostic& warning : check_shot(shot, invocation.render.overrides)) reporter->warning(warning);
-            if (!invocation.json) print(fmt::format("{}: ok\n", shot.string()));
+            const CheckReport report = check_shot(shot, invocation.render.overrides, invocation.verbose);
+            for (const Diagnostic& warning : report.warnings) reporter->warning(warning);
+            print_checked(invocation, shot, report);
         } catch (const InputError& error) {
             problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
         }

@@ -7,6 +7,7 @@
 #include "render/loaded_shot.h"
 #include "render/output_plan.h"
 #include "render/render_job.h"
+#include "render/timeline.h"
 
 namespace kadr {
 namespace {
@@ -24,16 +25,19 @@ void collect(std::vector<Diagnostic>& problems, const Check& check) {
 /// What the shot says alone, or with its scenes where they could be loaded.
 struct Bound {
     std::vector<int> frames;
-    std::vector<Diagnostic> warnings;
+    CheckReport report;
 };
 
-Bound bind_names(const Shot& shot, std::vector<Diagnostic>& problems) {
-    Bound bound{shot.timing.frames, shot.warnings};
+/// What `kadr check --verbose` prints of a shot that binds.
+std::string details_of(const LoadedShot& loaded) { return timeline_text(loaded.bound()); }
+
+Bound bind_names(const Shot& shot, bool verbose, std::vector<Diagnostic>& problems) {
+    Bound bound{shot.timing.frames, {shot.warnings, {}}};
     collect(problems, [&] {
         LoadOptions options;
         options.decode_textures = false;
         const LoadedShot loaded(shot, options);
-        bound = {loaded.bound().timing().frames, loaded.warnings()};
+        bound = {loaded.bound().timing().frames, {loaded.warnings(), verbose ? details_of(loaded) : std::string()}};
     });
     return bound;
 }
@@ -52,10 +56,10 @@ void check_folders(const Shot& shot, const std::vector<int>& frames, std::vector
 
 }  // namespace
 
-std::vector<Diagnostic> check_shot(const std::filesystem::path& path, const ShotOverrides& overrides) {
+CheckReport check_shot(const std::filesystem::path& path, const ShotOverrides& overrides, bool verbose) {
     const Shot shot = parse_shot(path, overrides);
     std::vector<Diagnostic> problems;
-    const Bound bound = bind_names(shot, problems);
+    Bound bound = bind_names(shot, verbose, problems);
     if (shot.output.video)
         collect(problems, [&] {
             plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
@@ -64,7 +68,7 @@ std::vector<Diagnostic> check_shot(const std::filesystem::path& path, const Shot
     for (Diagnostic& problem : colliding_patterns(shot.output, bound.frames)) problems.push_back(std::move(problem));
     check_folders(shot, bound.frames, problems);
     if (!problems.empty()) throw InputError(std::move(problems));
-    return bound.warnings;
+    return std::move(bound.report);
 }
 
 }  // namespace kadr

@@ -66,8 +66,13 @@ struct PreviewOptions {
 };
 FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events);
 
-/// Everything that can be known before rendering; writes nothing. @return warnings. @throws InputError with all problems
-std::vector<Diagnostic> check_shot(const std::filesystem::path& shot, const ShotOverrides& overrides);
+/// What is known of a shot before it is rendered.
+struct CheckReport {
+    std::vector<Diagnostic> warnings;
+    std::string details;   ///< the timeline and what else `kadr check --verbose` prints; empty without `verbose`
+};
+/// Everything that can be known before rendering; writes nothing. @throws InputError with all problems
+CheckReport check_shot(const std::filesystem::path& shot, const ShotOverrides& overrides, bool verbose = false);
 
 /// Bytes that this process holds now, and the most it has held.
 std::size_t current_memory_bytes();

@@ -78,6 +78,13 @@ class Usage(ProgramTest):
         self.assertEqual(self.run_kadr("check", self.shot).out, f"{self.shot}: ok\n")
         self.assertEqual(sorted(self.folder.rglob("*")), before)
 
+    def test_check_verbose_prints_the_timeline(self):
+        out = self.run_kadr("check", self.shot, "--verbose").out
+        self.assertTrue(out.startswith(f"{self.shot}: ok\ntiming: 3 frames from 0 to 2, 24 a second, frame 0 is at 0 s\n"), out)
+        self.assertIn("\n  scenes.ball.transform.rotate.angle   linear           2  0 s (f 0) to 1 s (f 24)\n", out)
+        lines = self.run_kadr("check", self.shot, "--verbose", "--json").out.splitlines()
+        self.assertEqual(json.loads(lines[0])["text"], out.split("\n", 1)[1])
+
     def test_describe(self):
         self.assertIn("samples", self.run_kadr("describe", "render.samples").out)
         self.assertGreater(len(self.run_kadr("describe").out.splitlines()), 20)
