@@ -5,11 +5,13 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "anim/timing.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "base/version.h"
@@ -24,7 +26,8 @@ struct RawOptions {
     std::string shot, size, device = "auto";
     std::vector<std::string> set, shots;
     int frame = 0, threads = 0, samples = 0;
-    std::string time;
+    std::string time, frames, sheet, from;
+    bool onion = false, path = false;
 };
 
 int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
@@ -35,18 +38,39 @@ int parse_number(const std::string& text, const std::string& option, const std::
     return value;
 }
 
-std::pair<int, int> parse_size(const std::string& text, const std::string& whole) {
-    static const std::string kExpected = "expected WIDTHxHEIGHT in pixels, as in --size 640x360";
+/// "640x360" as two numbers above zero.
+std::pair<int, int> parse_pair(const std::string& text, const std::string& option, const std::string& expected) {
     const std::size_t at = text.find('x');
-    if (at == std::string::npos) throw InputError(fmt::format("--size is '{}'", whole), kExpected);
+    if (at == std::string::npos) throw InputError(fmt::format("{} is '{}'", option, text), expected);
     const auto part = [&](const std::string& number) {
         try {
-            return parse_number(number, "--size", kExpected);
+            return parse_number(number, option, expected);
         } catch (const InputError&) {
-            throw InputError(fmt::format("--size is '{}'", whole), kExpected);
+            throw InputError(fmt::format("{} is '{}'", option, text), expected);
         }
     };
     return {part(text.substr(0, at)), part(text.substr(at + 1))};
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+    return parse_pair(text, "--size", "expected WIDTHxHEIGHT in pixels, as in --size 640x360");
+}
+
+std::pair<int, int> parse_sheet(const std::string& text) {
+    constexpr int kMostTiles = 400;
+    const std::string expected = fmt::format("expected COLUMNSxROWS, at most {} tiles, as in --sheet 4x3", kMostTiles);
+    const auto [columns, rows] = parse_pair(text, "--sheet", expected);
+    if (columns > kMostTiles / rows) throw InputError(fmt::format("--sheet is '{}'", text), expected);
+    return {columns, rows};
+}
+
+Viewpoint parse_viewpoint(const std::string& text) {
+    static const std::map<std::string, Viewpoint> kViewpoints{
+        {"camera", Viewpoint::camera}, {"side", Viewpoint::side}, {"top", Viewpoint::top}, {"iso", Viewpoint::iso}};
+    const auto found = kViewpoints.find(text);
+    if (found == kViewpoints.end())
+        throw InputError(fmt::format("--from is '{}'", text), "expected camera, side, top or iso");
+    return found->second;
 }
 
 std::pair<std::string, std::string> parse_setting(const std::string& text) {
@@ -97,6 +121,7 @@ private:
     void refuse_unknown_command(const std::vector<std::string>& arguments) const;
     void refuse_unknown_option(const CLI::App& app, const std::vector<std::string>& arguments) const;
     void fill_in();
+    void fill_preview();
     void fill_overrides(RenderOptions& options) const;
 
     CLI::App app_{"kadr renders animated shots of glTF scenes to images and video.", "kadr"};
@@ -164,12 +189,22 @@ void Parser::add_render() {
 }
 
 void Parser::add_preview() {
-    CLI::App* app = add(Command::preview, "preview", "render one frame at preview quality",
-                        "kadr preview shots/turntable.yaml --frame 42 --output still.png");
+    CLI::App* app = add(Command::preview, "preview", "one picture at preview quality: a frame, or how the shot moves",
+                        "kadr preview shots/turntable.yaml --frame 42 --output still.png\n"
+                        "  kadr preview shots/turntable.yaml --sheet 4x3        (twelve frames side by side)\n"
+                        "  kadr preview shots/spin.yaml --onion --frames 0-12x3 (what moves, as ghosts in one picture)\n"
+                        "  kadr preview shots/pan.yaml --path --frame 24        (the ways of camera, target and objects)\n"
+                        "  kadr preview shots/pan.yaml --path --from top        (the same, and the camera, from above)");
     add_shot(app);
-    CLI::Option* frame = app->add_option("--frame", raw_.frame, "number of the frame (default: the shot's first)");
-    app->add_option("--time", raw_.time, "time in seconds instead: 1.75s")->excludes(frame);
-    app->add_option("--output", invocation_.preview.output, "image file (default: NAME.FRAME.preview.png)");
+    app->add_option("--frame", raw_.frame, "number of the frame (default: the shot's first)");
+    app->add_option("--time", raw_.time, "time in seconds instead: 1.75s");
+    app->add_option("--sheet", raw_.sheet, "COLUMNSxROWS frames on a contact sheet; --size is that of a tile");
+    app->add_flag("--onion", raw_.onion, "frames overlaid: what moves, from early (warm) to late (cool)");
+    app->add_flag("--path", raw_.path, "the paths of camera, target and objects over a frame; long dashes: the shutter is open");
+    app->add_option("--from", raw_.from, "where --path is seen from: camera, side, top or iso (default: camera)");
+    app->add_option("--frames", raw_.frames, "frames of --sheet, --onion and --path: 0-95 or 0-40x5 (default: the shot's)");
+    app->add_option("--output", invocation_.preview.output,
+                    "image file (default: NAME.FRAME.preview.png, NAME.sheet.png, NAME.onion.png, NAME.FRAME.path.png)");
     add_overrides(app);
     app->add_flag("--stats", invocation_.stats, "print what the device counted");
     app->add_flag("--json", invocation_.json, "one JSON object a line");
@@ -261,16 +296,59 @@ void Parser::fill_overrides(RenderOptions& options) const {
     options.overrides.samples = raw_.samples;
     for (const std::string& text : raw_.set) options.overrides.set.push_back(parse_setting(text));
     if (raw_.size.empty()) return;
-    const auto [width, height] = parse_size(raw_.size, raw_.size);
+    const auto [width, height] = parse_size(raw_.size);
     options.overrides.width = width;
     options.overrides.height = height;
 }
 
+/// Two options of `kadr preview` that do not go together.
+struct Conflict {
+    const char *first, *second, *expected;
+};
+constexpr const char* kOneKind = "expected one of --sheet, --onion and --path";
+constexpr const char* kSeveralFrames = "several frames are shown: choose them by --frames, as in --frames 0-95";
+constexpr Conflict kConflicts[] = {
+    {"--frame", "--time", "expected one of them"},
+    {"--sheet", "--onion", kOneKind},
+    {"--sheet", "--path", kOneKind},
+    {"--onion", "--path", kOneKind},
+    {"--sheet", "--frame", kSeveralFrames},
+    {"--sheet", "--time", kSeveralFrames},
+    {"--onion", "--frame", kSeveralFrames},
+    {"--onion", "--time", kSeveralFrames},
+};
+
+void check_conflicts(const CLI::App& app) {
+    const auto given = [&](const char* option) { return app.count(option) > 0; };
+    for (const Conflict& conflict : kConflicts)
+        if (given(conflict.first) && given(conflict.second))
+            throw InputError(fmt::format("{} and {} exclude each other", conflict.first, conflict.second), conflict.expected);
+    if (given("--from") && !given("--path"))
+        throw InputError("--from stands without --path", "--from says where --path is seen from: --path --from top");
+    if (given("--frames") && !given("--sheet") && !given("--onion") && !given("--path"))
+        throw InputError("--frames stands without --sheet, --onion or --path",
+                         "expected --frame N for one frame; `kadr render` renders many");
+}
+
+void Parser::fill_preview() {
+    const CLI::App& app = *commands_[Command::preview];
+    check_conflicts(app);
+    PreviewOptions& preview = invocation_.preview;
+    preview.render = invocation_.render;
+    if (app.count("--frame") > 0) preview.frame = raw_.frame;
+    if (!raw_.time.empty()) preview.time_s = parse_seconds(raw_.time);
+    if (!raw_.frames.empty()) preview.frames = parse_frame_list(raw_.frames);
+    if (!raw_.from.empty()) preview.from = parse_viewpoint(raw_.from);
+    if (raw_.onion) preview.kind = PreviewKind::onion;
+    if (raw_.path) preview.kind = PreviewKind::path;
+    if (app.count("--sheet") == 0) return;
+    preview.kind = PreviewKind::sheet;
+    std::tie(preview.columns, preview.rows) = parse_sheet(raw_.sheet);
+}
+
 void Parser::fill_in() {
     fill_overrides(invocation_.render);
-    invocation_.preview.render = invocation_.render;
-    if (commands_[Command::preview]->count("--frame") > 0) invocation_.preview.frame = raw_.frame;
-    if (!raw_.time.empty()) invocation_.preview.time_s = parse_seconds(raw_.time);
+    fill_preview();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());
     invocation_.smoke.shots = invocation_.shots;
     invocation_.smoke.device = invocation_.render.device;

@@ -34,9 +34,12 @@ int run_preview(const Invocation& invocation) {
     const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
     RenderEvents events = reporter->events();
     if (!invocation.json && !invocation.stats) events.frame_done = [](const FrameReport&) {};  // the line below says it
-    const FrameReport report = preview_frame(invocation.preview, events);
+    const FrameReport report = render_preview(invocation.preview, events);
     reporter->clear();
-    if (!invocation.json) print(fmt::format("preview: {} in {:.2f} s\n", report.files.front().string(), report.seconds));
+    if (invocation.json) return kDone;
+    print(fmt::format("{}: {} in {:.2f} s\n", report.preview.empty() ? "preview" : report.preview,
+                      report.files.front().string(), report.seconds));
+    if (!report.note.empty()) print(fmt::format("  {}\n", report.note));
     return kDone;
 }
 

@@ -29,6 +29,8 @@ std::string readable_time(double seconds) {
 
 std::string frame_line(const FrameReport& report) {
     const std::string file = report.files.empty() ? std::string() : report.files.front().string();
+    if (!report.preview.empty())
+        return fmt::format("{} of {} frames: {} in {}", report.preview, report.frames.size(), file, readable_time(report.seconds));
     if (report.reused) return fmt::format("frame {}: reused {}", report.frame, file);
     return fmt::format("frame {}: {} in {}", report.frame, file, readable_time(report.seconds));
 }
@@ -148,6 +150,9 @@ Json statistics_json(const DeviceStatistics& device) {
 Json frame_json(const FrameReport& report) {
     Json files = Json::array();
     for (const auto& file : report.files) files.push_back(file.string());
+    if (!report.preview.empty())
+        return {{"event", "preview"}, {"preview", report.preview}, {"frames", report.frames}, {"note", report.note},
+                {"seconds", report.seconds}, {"samples", report.samples}, {"files", files}};
     return {{"event", "frame"}, {"frame", report.frame}, {"reused", report.reused}, {"seconds", report.seconds},
             {"samples", report.samples}, {"dropped", report.dropped}, {"clamped", report.clamped},
             {"motion_error_px", report.motion_error_px}, {"files", files}};

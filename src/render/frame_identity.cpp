@@ -65,20 +65,25 @@ bool is_linear_file(const std::filesystem::path& path) {
     return extension == ".exr";
 }
 
-Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
-                        const std::string& device_name) {
+Metadata shot_metadata(const Shot& shot, const std::string& device_name) {
     return {
         {"shot", shot.name},
-        {"frame", std::to_string(time.number)},
-        {"time", format_number(time.time_s())},
         {"samples", std::to_string(shot.render.samples)},
         {"seed", std::to_string(shot.render.seed)},
         {"version", kVersion},
         {"device", device_kind(device_name)},
-        {"motion_error_px", fmt::format("{:.4g}", frame.motion_error_px)},
-        {"dropped_samples", std::to_string(frame.statistics.dropped_samples)},
-        {"seconds", fmt::format("{:.3f}", frame.seconds)},
     };
+}
+
+Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
+                        const std::string& device_name) {
+    Metadata metadata = shot_metadata(shot, device_name);
+    metadata["frame"] = std::to_string(time.number);
+    metadata["time"] = format_number(time.time_s());
+    metadata["motion_error_px"] = fmt::format("{:.4g}", frame.motion_error_px);
+    metadata["dropped_samples"] = std::to_string(frame.statistics.dropped_samples);
+    metadata["seconds"] = fmt::format("{:.3f}", frame.seconds);
+    return metadata;
 }
 
 }  // namespace kadr

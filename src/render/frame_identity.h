@@ -32,6 +32,9 @@ private:
 /// Whether files of this name hold linear values (no view applied).
 bool is_linear_file(const std::filesystem::path& path);
 
+/// What every picture of a shot says about itself: what was rendered, with what.
+Metadata shot_metadata(const Shot& shot, const std::string& device_name);
+
 /// What a frame's file says about itself, but for "settings".
 Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
                         const std::string& device_name);

@@ -14,18 +14,6 @@ namespace {
 // Enough for a log-average; the value is a function of the shot alone, so any small number would do.
 constexpr int kMeterWidth = 160, kMeterSamples = 16;
 
-void add(DeviceStatistics& sum, const DeviceStatistics& part) {
-    sum.pixel_samples += part.pixel_samples;
-    sum.rays += part.rays;
-    sum.dropped_samples += part.dropped_samples;
-    sum.load_s = part.load_s;
-    sum.set_frame_s += part.set_frame_s;
-    sum.render_s += part.render_s;
-    sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
-    sum.instances = std::max(sum.instances, part.instances);
-    sum.moving_instances = std::max(sum.moving_instances, part.moving_instances);
-}
-
 std::vector<double> weights_of(const std::vector<SceneSnapshot>& parts) {
     std::vector<double> weights;
     for (const SceneSnapshot& part : parts) weights.push_back(part.weight);
@@ -37,6 +25,18 @@ void stop_if_interrupted() {
 }
 
 }  // namespace
+
+void add(DeviceStatistics& sum, const DeviceStatistics& part) {
+    sum.pixel_samples += part.pixel_samples;
+    sum.rays += part.rays;
+    sum.dropped_samples += part.dropped_samples;
+    sum.load_s = part.load_s;
+    sum.set_frame_s += part.set_frame_s;
+    sum.render_s += part.render_s;
+    sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
+    sum.instances = std::max(sum.instances, part.instances);
+    sum.moving_instances = std::max(sum.moving_instances, part.moving_instances);
+}
 
 FilmLayers film_layers(const std::vector<Aov>& aovs) {
     const auto has = [&](Aov aov) { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); };

@@ -20,6 +20,9 @@ struct RenderedFrame {
 /// The layers that a shot asks for.
 FilmLayers film_layers(const std::vector<Aov>& aovs);
 
+/// Adds the counters of one part of the work to those of the whole.
+void add(DeviceStatistics& sum, const DeviceStatistics& part);
+
 /// Renders frames of bound shots on one device, one after another; keeps the film between frames.
 class FrameRenderer {
 public:

@@ -1,80 +1,171 @@
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "frame/camera_keys.h"
 #include "output/frame_writer.h"
-#include "output/image_io.h"
-#include "render/environment_image.h"
 #include "render/frame_identity.h"
-#include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
+#include "render/onion.h"
 #include "render/output_plan.h"
-#include "render/render_job.h"
-#include "render/stopwatch.h"
+#include "render/preview_session.h"
+#include "render/sheet.h"
 
 namespace kadr {
 namespace {
 
-constexpr int kPreviewSamples = 4, kPreviewWidth = 640;
+constexpr int kPreviewWidth = 640;
 
-Shot preview_shot(const RenderOptions& options) {
-    Shot shot = parse_shot(options.shot, options.overrides);
-    if (options.overrides.samples == 0) shot.render.samples = std::min(shot.render.samples, kPreviewSamples);
-    if (options.overrides.width == 0) shot.image = limited_width(shot.image, kPreviewWidth);
-    return shot;
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return extension;
 }
 
-FrameTime preview_time(const PreviewOptions& options, const BoundShot& shot) {
-    if (options.time_s) return shot.sequence().at_time(*options.time_s);
-    return shot.sequence().frame(options.frame.value_or(shot.timing().frames.front()));
+/// What is wrong with --output is said before the first ray.
+void check_output(const PreviewOptions& options) {
+    if (options.output.empty()) return;
+    const std::string extension = lower_extension(options.output);
+    const bool is_display = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+    const bool is_still = options.kind == PreviewKind::still;
+    if (is_display || (is_still && extension == ".exr")) return;
+    throw InputError(fmt::format("--output is '{}'", options.output.string()),
+                     is_still
+                         ? "expected a name that ends in .png, .jpg or .exr"
+                         : "expected a name that ends in .png or .jpg: it is a picture for people, not linear light");
 }
 
-std::filesystem::path preview_file(const PreviewOptions& options, const Shot& shot, int frame) {
-    if (!options.output.empty()) return frame_path(options.output.string(), frame);
-    return fmt::format("{}.{:04}.preview.png", shot.name, frame);
+std::filesystem::path file_of(const PreviewOptions& options, const std::string& default_name, int frame) {
+    const std::filesystem::path file =
+        options.output.empty() ? std::filesystem::path(default_name) : frame_path(options.output.string(), frame);
+    prepare_folders({std::filesystem::absolute(file).parent_path()});
+    return file;
 }
 
-ViewSpec preview_view(const LoadedShot& shot, FrameRenderer& renderer) {
-    ViewSpec view = shot.shot().view;
-    if (!view.automatic) return view;
-    const FrameTime first = shot.bound().sequence().frame(shot.bound().timing().frames.front());
-    view.exposure_stops = meter_exposure(shot.shot(), shot.scene(), renderer, first);
-    view.automatic = false;
-    return view;
+const std::vector<int>& frames_of(const PreviewOptions& options, const PreviewSession& session) {
+    return options.frames ? *options.frames : session.bound().timing().frames;
 }
+
+FrameTime time_of(const PreviewOptions& options, const PreviewSession& session) {
+    if (options.time_s) return session.bound().sequence().at_time(*options.time_s);
+    return session.frame(options.frame.value_or(frames_of(options, session).front()));
+}
+
+std::function<void(Shot&)> limit_width(const PreviewOptions& options) {
+    return [&options](Shot& shot) {
+        if (options.render.overrides.width == 0) shot.image = limited_width(shot.image, kPreviewWidth);
+    };
+}
+
+FrameReport preview_still(const PreviewOptions& options, const RenderEvents& events) {
+    PreviewSession session(options.render, events, limit_width(options));
+    const FrameTime time = time_of(options, session);
+    const std::filesystem::path file =
+        file_of(options, fmt::format("{}.{:04}.preview.png", session.shot().name, time.number), time.number);
+    const FilmLayers layers = is_linear_file(file) ? film_layers(session.shot().output.aovs) : FilmLayers{};
+    const RenderedFrame frame = session.render(session.bound(), time, layers);
+    // No settings hash: a preview never passes for a frame of the shot.
+    write_frame(file, frame.image, session.view(), session.shot().output.png_bits,
+                frame_metadata(session.shot(), time, frame, session.device_name()));
+    FrameReport report = session.report();
+    report.frame = time.number;
+    report.files = {file};
+    return report;
+}
+
+/// Writes a picture that shows several frames, and says so.
+FrameReport deliver(const PreviewSession& session, const std::filesystem::path& file, const Image& picture,
+                    const std::string& kind, const std::vector<int>& frames) {
+    session.write(file, picture, session.metadata(kind, frames));
+    FrameReport report = session.report();
+    report.preview = kind;
+    report.frame = frames.front();
+    report.frames = frames;
+    report.files = {file};
+    return report;
+}
+
+FrameReport preview_sheet(const PreviewOptions& options, const RenderEvents& events) {
+    SheetLayout layout;
+    PreviewSession session(options.render, events, [&](Shot& shot) {
+        layout = sheet_layout(options.columns, options.rows, shot.image);
+        if (options.render.overrides.width > 0) {
+            layout.tile_width = shot.image.width;
+            layout.tile_height = shot.image.height;
+        }
+        check_sheet_size(layout);
+        shot.image.width = layout.tile_width;
+        shot.image.height = layout.tile_height;
+    });
+    const std::vector<int> frames = spread(frames_of(options, session), layout.tiles());
+    const std::filesystem::path file = file_of(options, session.shot().name + ".sheet.png", frames.front());
+    Image sheet = empty_sheet(layout);
+    std::vector<FrameTime> times;
+    for (const int frame : frames) {
+        const int tile = static_cast<int>(times.size());
+        times.push_back(session.frame(frame));
+        place_tile(sheet, layout, tile, session.picture(times.back(), static_cast<int>(frames.size()) - tile - 1));
+    }
+    label_tiles(sheet, layout, times);
+    return deliver(session, file, sheet, "sheet", frames);
+}
+
+/// Whether the picture's frame of reference is the same at all of these times, their shutters included.
+bool camera_stands_still(const BoundShot& shot, const std::vector<FrameTime>& times) {
+    const CameraState first = camera_at(shot, times.front().open_s);
+    return std::all_of(times.begin(), times.end(), [&](const FrameTime& time) {
+        return camera_at(shot, time.open_s) == first && camera_at(shot, 0.5 * (time.open_s + time.close_s)) == first &&
+               camera_at(shot, time.close_s) == first;
+    });
+}
+
+/// The frames that were asked for, or seven of the shot's.
+std::vector<int> onion_frames(const PreviewOptions& options, const PreviewSession& session) {
+    constexpr int kGhosts = 7;
+    constexpr std::size_t kMostGhosts = 32;
+    if (!options.frames) return spread(session.bound().timing().frames, kGhosts);
+    if (options.frames->size() <= kMostGhosts) return *options.frames;
+    throw InputError(fmt::format("--frames gives {} frames to --onion", options.frames->size()),
+                     fmt::format("expected at most {}: take every nth, as in --frames 0-40x5", kMostGhosts));
+}
+
+FrameReport preview_onion(const PreviewOptions& options, const RenderEvents& events) {
+    PreviewSession session(options.render, events, [&](Shot& shot) {
+        limit_width(options)(shot);
+        shot.render.seed_animated = false;  // the same noise where nothing changes
+    });
+    const std::vector<int> frames = onion_frames(options, session);
+    const std::filesystem::path file = file_of(options, session.shot().name + ".onion.png", frames.front());
+    std::vector<FrameTime> times;
+    for (const int frame : frames) times.push_back(session.frame(frame));
+    std::vector<Image> pictures;
+    for (const FrameTime& time : times)
+        pictures.push_back(session.picture(time, static_cast<int>(times.size() - pictures.size()) - 1));
+    const bool still = camera_stands_still(session.bound(), times);
+    Image onion = overlay_frames(pictures, still);
+    label_ghosts(onion, times, still);
+    FrameReport report = deliver(session, file, onion, "onion", frames);
+    if (!still) report.note = "the camera moves: this is the plain mean of the frames; see --path for its way";
+    return report;
+}
+
+FrameReport preview_path(const PreviewOptions&, const RenderEvents&) {
+    throw InputError("--path is not built yet", "expected --sheet or --onion");
+}
+
+using Preview = FrameReport (*)(const PreviewOptions&, const RenderEvents&);
+/// [PreviewKind]
+constexpr std::array<Preview, 4> kPreviews{preview_still, preview_sheet, preview_onion, preview_path};
 
 }  // namespace
 
-FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events) {
-    const Stopwatch watch;
-    // The device first: it starts its threads, which would wait for the image module while that is being opened.
-    const DeviceChoice choice = make_device(options.render.device);
-    open_image_io_in_background();
-    const LoadedShot loaded(preview_shot(options.render));
-    for (const Diagnostic& warning : loaded.warnings()) events.warning(warning);
-    load_device(*choice.device, loaded);
-    FrameRenderer renderer(*choice.device);
-
-    const FrameTime time = preview_time(options, loaded.bound());
-    const std::filesystem::path file = preview_file(options, loaded.shot(), time.number);
-    prepare_folders({std::filesystem::absolute(file).parent_path()});
-    const FilmLayers layers = is_linear_file(file) ? film_layers(loaded.shot().output.aovs) : FilmLayers{};
-    const ViewSpec view = preview_view(loaded, renderer);
-    const RenderedFrame frame = renderer.render(
-        loaded.bound(), time, layers, [&](double fraction) { events.frame_progress(time.number, fraction, 0); });
-    // No settings hash: a preview never passes for a frame of the shot.
-    write_frame(file, frame.image, view, loaded.shot().output.png_bits,
-                frame_metadata(loaded.shot(), time, frame, choice.device->name()));
-
-    FrameReport report;
-    report.frame = time.number;
-    report.seconds = watch.seconds();
-    report.samples = frame.statistics.pixel_samples;
-    report.dropped = frame.statistics.dropped_samples;
-    report.motion_error_px = frame.motion_error_px;
-    report.files = {file};
-    report.device = frame.statistics;
+FrameReport render_preview(const PreviewOptions& options, const RenderEvents& events) {
+    check_output(options);
+    FrameReport report = kPreviews[static_cast<std::size_t>(options.kind)](options, events);
     events.frame_done(report);
     return report;
 }

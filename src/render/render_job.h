@@ -34,6 +34,9 @@ struct FrameReport {
     double motion_error_px = 0;
     std::vector<std::filesystem::path> files;
     DeviceStatistics device;
+    std::string preview;             ///< "sheet", "onion" or "path": a picture that is no frame of the shot
+    std::vector<int> frames;         ///< those that such a picture shows
+    std::string note;                ///< what else a person should know of it; may be empty
 };
 
 struct RenderSummary {
@@ -58,13 +61,21 @@ struct RenderEvents {
 /// @throws InputError, RenderError, Interrupted
 RenderSummary render_shot(const RenderOptions& options, const RenderEvents& events);
 
+enum class PreviewKind { still, sheet, onion, path };
+enum class Viewpoint { camera, side, top, iso };
 struct PreviewOptions {
     RenderOptions render;
-    std::optional<int> frame;
-    std::optional<double> time_s;
-    std::filesystem::path output;    ///< empty: NAME.FRAME.preview.png in the working folder
+    PreviewKind kind = PreviewKind::still;
+    std::optional<int> frame;               ///< still, path
+    std::optional<double> time_s;           ///< still, path
+    std::optional<std::vector<int>> frames; ///< sheet, onion, path: those to show; absent: the shot's
+    int columns = 4, rows = 3;              ///< sheet
+    Viewpoint from = Viewpoint::camera;     ///< path
+    std::filesystem::path output;           ///< empty: NAME.FRAME.preview.png, NAME.sheet.png, ... in the working folder
 };
-FrameReport preview_frame(const PreviewOptions& options, const RenderEvents& events);
+/// One picture that shows what the shot will look like or how it moves, quickly.
+/// @throws InputError, RenderError, Interrupted
+FrameReport render_preview(const PreviewOptions& options, const RenderEvents& events);
 
 /// What is known of a shot before it is rendered.
 struct CheckReport {

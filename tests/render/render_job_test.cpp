@@ -209,7 +209,7 @@ TEST_F(RenderJobTest, PreviewIsSmallAndNeverPassesForAFrame) {
     preview.render = options_;
     preview.frame = 2;
     preview.output = file("tiny.0002.png");
-    const FrameReport report = preview_frame(preview, events_);
+    const FrameReport report = render_preview(preview, events_);
     EXPECT_EQ(report.frame, 2);
     EXPECT_EQ(stored_settings_hash(file("tiny.0002.png")), "");
     EXPECT_EQ(run().reused, 0);
