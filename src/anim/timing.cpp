@@ -44,11 +44,14 @@ Rational reduce(Wide numerator, Wide denominator) {
     return {static_cast<std::int64_t>(numerator), static_cast<std::int64_t>(denominator)};
 }
 
-/// (frames + offset) / fps, rounded once: 80-bit floats hold every frame number and offset that is used in practice.
-double seconds_at(std::int64_t frames, double offset, Rational fps) {
+/// (frames + offset) / fps + seconds, rounded once: 80-bit floats hold every frame number and offset that is used in
+/// practice.
+double seconds_at(std::int64_t frames, double offset, Rational fps, double seconds) {
     const long double exact_frames = static_cast<long double>(frames) + static_cast<long double>(offset);
-    return static_cast<double>(exact_frames * static_cast<long double>(fps.denominator) / static_cast<long double>(fps.numerator));
+    return static_cast<double>(exact_frames * static_cast<long double>(fps.denominator) / static_cast<long double>(fps.numerator) + static_cast<long double>(seconds));
 }
+
+double closing_s(const Shutter& shutter) { return shutter.close_s + shutter.rolling.duration_s; }
 
 /// A double is a fraction already; digits finer than 2^-40 s (a picosecond) are dropped where 64 bits do not hold them.
 Rational exact_seconds(double seconds) {
@@ -120,15 +123,15 @@ Rational operator+(Rational a, Rational b) {
     return reduce(Wide{a.numerator} * a_scale + Wide{b.numerator} * b_scale, Wide{a.denominator} * a_scale);
 }
 
-Sequence::Sequence(Timing timing, Shutter shutter) : timing_(std::move(timing)), shutter_(shutter) {}
+Sequence::Sequence(Timing timing, Shutter shutter) : timing_(std::move(timing)), shutter_(std::move(shutter)) {}
 
 FrameTime Sequence::frame(int number) const {
     const std::int64_t frames = std::int64_t{number} - timing_.first;
     FrameTime result;
     result.number = number;
     result.time = make_rational(frames, 1) / timing_.fps;
-    result.open_s = seconds_at(frames, shutter_.open_frames, timing_.fps);
-    result.close_s = seconds_at(frames, shutter_.close_frames, timing_.fps);
+    result.open_s = seconds_at(frames, shutter_.open_frames, timing_.fps, shutter_.open_s);
+    result.close_s = seconds_at(frames, shutter_.close_frames, timing_.fps, closing_s(shutter_));
     return result;
 }
 
@@ -139,8 +142,8 @@ FrameTime Sequence::at_time(double seconds) const {
     FrameTime result;
     result.number = timing_.first + static_cast<int>(std::llround(frames));
     result.time = exact_seconds(seconds);
-    result.open_s = seconds + seconds_at(0, shutter_.open_frames, timing_.fps);
-    result.close_s = seconds + seconds_at(0, shutter_.close_frames, timing_.fps);
+    result.open_s = seconds + seconds_at(0, shutter_.open_frames, timing_.fps, shutter_.open_s);
+    result.close_s = seconds + seconds_at(0, shutter_.close_frames, timing_.fps, closing_s(shutter_));
     return result;
 }
 

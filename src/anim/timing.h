@@ -4,20 +4,10 @@
 #include <string_view>
 #include <vector>
 
-namespace kadr {
+#include "anim/rational.h"
+#include "anim/shutter.h"
 
-/// An exact fraction in lowest terms with a positive denominator; frame times are fractions so that 24000/1001
-/// never drifts.
-struct Rational {
-    std::int64_t numerator = 0, denominator = 1;
-    double value() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
-    bool operator==(const Rational&) const = default;
-};
-/// Lowest terms. @throws std::overflow_error where 64 bits do not hold the result
-Rational make_rational(std::int64_t numerator, std::int64_t denominator);
-Rational operator*(Rational a, Rational b);
-Rational operator/(Rational a, Rational b);
-Rational operator+(Rational a, Rational b);
+namespace kadr {
 
 /// Which frames a shot has and how fast they run.
 struct Timing {
@@ -27,17 +17,12 @@ struct Timing {
     bool operator==(const Timing&) const = default;
 };
 
-/// When the shutter opens and closes, in frames relative to the frame's time; open == close means no motion blur.
-struct Shutter {
-    double open_frames = 0, close_frames = 0.5;
-    bool operator==(const Shutter&) const = default;
-};
-
 /// One frame of the sequence: exact time and the shutter's seconds.
 struct FrameTime {
     int number = 0;
     Rational time;                  ///< seconds, exact
-    double open_s = 0, close_s = 0; ///< shutter; open_s == close_s without motion blur
+    /// The shutter, from the first line's opening to the last line's closing; equal without motion blur.
+    double open_s = 0, close_s = 0;
     double time_s() const { return time.value(); }
 };
 

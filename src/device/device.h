@@ -15,6 +15,9 @@ namespace kadr {
 /// Samples [first_sample, first_sample + sample_count) of every pixel.
 struct Pass {
     int first_sample = 0, sample_count = 1;
+    /// Share of the frame's samples that this part of the shutter was dealt: what each of them counts for is the light
+    /// of the part over this share. 0: the part's own weight.
+    double dealt_share = 0;
     int total_samples = 0;                          ///< of the frame; 1 under `direct`: pixel centres, pinhole, no blur
     const std::atomic<bool>* cancel = nullptr;      ///< set: return early (film is then incomplete)
     std::function<void(double fraction)> progress;  ///< 0..1, called from any thread, rarely

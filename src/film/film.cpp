@@ -91,7 +91,8 @@ Film::Film(int width, int height, FilmLayers layers) : width_(width), height_(he
     if (layers.error) groups_.resize(count);
 }
 
-void Film::clear() {
+void Film::clear(bool weighted) {
+    weights_.assign(weighted ? beauty_.size() : 0, 0.0f);
     std::fill(beauty_.begin(), beauty_.end(), Beauty{});
     std::fill(samples_.begin(), samples_.end(), 0u);
     std::fill(surface_.begin(), surface_.end(), Surface{});
@@ -104,11 +105,11 @@ Image Film::develop() const {
     image.pixels.resize(beauty_.size() * image.channels.size());
     float* out = image.pixels.data();
     for (std::size_t i = 0; i < beauty_.size(); ++i) {
-        const float samples = static_cast<float>(samples_[i]);
+        const float samples = static_cast<float>(samples_[i]), weight = weighted() ? weights_[i] : samples;
         const Beauty& beauty = beauty_[i];
-        for (const float sum : {beauty.r, beauty.g, beauty.b}) *out++ = over_samples(sum, samples);
-        *out++ = std::clamp(over_samples(beauty.alpha, samples), 0.0f, 1.0f);
-        for (const Channel& channel : channels) *out++ = channel.value(surface_[i], samples);
+        for (const float sum : {beauty.r, beauty.g, beauty.b}) *out++ = over_samples(sum, weight);
+        *out++ = std::clamp(over_samples(beauty.alpha, weight), 0.0f, 1.0f);
+        for (const Channel& channel : channels) *out++ = channel.value(surface_[i], weight);
         if (layers_.samples) *out++ = samples;
         if (layers_.error) *out++ = standard_error(groups_[i]);
     }

@@ -26,26 +26,31 @@ struct FilmLayers {
 class Film {
 public:
     Film(int width, int height, FilmLayers layers);
-    void clear();
+    /// @param weighted  samples count for different amounts of light (a split or a rolling shutter): see weight()
+    void clear(bool weighted = false);
 
     int width() const { return width_; }
     int height() const { return height_; }
     const FilmLayers& layers() const { return layers_; }
 
     struct Beauty { float r = 0, g = 0, b = 0, alpha = 0; };
-    /// Sums over samples; normal in world space; depth (metres along the view axis) and motion (pixels since the previous
+    /// Sums over samples, times their weight where the film is weighted; normal in world space; depth (metres along the view axis) and motion (pixels since the previous
     /// frame, x right, y down) over the samples that hit a surface, whose number is depth_weight.
     struct Surface { float albedo[3] = {}, normal[3] = {}; float depth = 0; float depth_weight = 0; float motion[2] = {}; };
 
     Beauty& beauty(int x, int y) { return beauty_[index(x, y)]; }
     std::uint32_t& samples(int x, int y) { return samples_[index(x, y)]; }
+    bool weighted() const { return !weights_.empty(); }
+    /// Sum of the samples' shares of the light over the shutter, about 1 each; what sums are divided by instead of the
+    /// number of samples. Only when weighted().
+    float& weight(int x, int y) { return weights_[index(x, y)]; }
     Surface& surface(int x, int y) { return surface_[index(x, y)]; }     ///< only when layers().any_surface()
     /// For the error layer: sum and sum of squares of the mean luminance of equal groups of samples (a group may be one
     /// sample), in double.
     struct Groups { double sum = 0, sum_of_squares = 0; std::uint32_t count = 0; };
     Groups& groups(int x, int y) { return groups_[index(x, y)]; }        ///< only when layers().error
 
-    /// Linear radiance (premultiplied alpha) and the layers, sums over counts: R G B A, albedo.R/G/B, normal.X/Y/Z (unit,
+    /// Linear radiance (premultiplied alpha) and the layers, sums over counts or weights: R G B A, albedo.R/G/B, normal.X/Y/Z (unit,
     /// or zero), depth.Z (+infinity where nothing was hit), motion.X/Y, samples.N, error.Y (standard error of the
     /// luminance). Holds no NaN, and no infinity but that of the depth.
     Image develop() const;
@@ -56,6 +61,7 @@ private:
     FilmLayers layers_;
     std::vector<Beauty> beauty_;
     std::vector<std::uint32_t> samples_;
+    std::vector<float> weights_;
     std::vector<Surface> surface_;
     std::vector<Groups> groups_;
 };

@@ -15,6 +15,7 @@
 #include "frame/motion_frames.h"
 #include "frame/problem.h"
 #include "frame/render_origin.h"
+#include "frame/shutter_part.h"
 
 namespace kadr {
 
@@ -193,11 +194,10 @@ private:
         SceneSnapshot snapshot;
         snapshot.render_origin = origin_;
         if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
-        const double whole = frame_.close_s - frame_.open_s;
         snapshot.frame_number = frame_.number;
         snapshot.open_s = part.open_s;
         snapshot.close_s = part.close_s;
-        snapshot.weight = whole > 0 ? (part.close_s - part.open_s) / whole : 1;
+        set_shutter(shot_, frame_, snapshot);
         snapshot.camera_keys = make_camera_keys(shot_, inside.open_s, inside.close_s, origin_);
         snapshot.camera = make_camera(shot_);
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "frame/frame_state.h"
+#include "kernels/camera/shutter.h"
 #include "kernels/scene/motion_types.h"
 #include "kernels/scene/scene_types.h"
 
@@ -58,7 +59,8 @@ struct PreviousPlaces {
 struct SceneSnapshot {
     int frame_number = 0;
     double open_s = 0, close_s = 0;            ///< of this part of the shutter
-    double weight = 1;                         ///< this part's share of the frame's samples; the parts add up to 1
+    double weight = 1;                         ///< this part's share of the frame's light; the parts add up to 1
+    kernels::Shutter shutter;                  ///< when that light arrives
     glm::dvec3 render_origin{0};
     std::vector<SnapshotInstance> instances;
     MotionFrames motion;                       ///< headers parallel to instances

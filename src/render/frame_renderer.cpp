@@ -20,6 +20,21 @@ std::vector<double> weights_of(const std::vector<SceneSnapshot>& parts) {
     return weights;
 }
 
+/// Whether samples of different parts, or of different lines, stand for different amounts of light.
+bool needs_weights(const std::vector<SceneSnapshot>& parts, const std::vector<SampleRange>& ranges, int total) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (!parts[i].shutter.plain || static_cast<float>(parts[i].weight * total) != static_cast<float>(ranges[i].count)) return true;
+    return false;
+}
+
+/// Multiplies the radiance of a physical exposure; coverage and data layers stay.
+void expose(Image& image, double factor) {
+    if (factor == 1) return;
+    constexpr std::size_t kColors = 3;
+    for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size())
+        for (std::size_t c = 0; c < kColors; ++c) image.pixels[i + c] *= static_cast<float>(factor);
+}
+
 void stop_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
 }
@@ -50,12 +65,10 @@ FilmLayers film_layers(const std::vector<Aov>& aovs) {
     return layers;
 }
 
-Film& FrameRenderer::cleared_film(int width, int height, const FilmLayers& layers) {
-    const bool fits = film_ && film_->width() == width && film_->height() == height && film_->layers() == layers;
-    if (fits)
-        film_->clear();
-    else
-        film_.emplace(width, height, layers);
+Film& FrameRenderer::cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted) {
+    const bool fits = film_ && film_->width() == image.width && film_->height() == image.height && film_->layers() == layers;
+    if (!fits) film_.emplace(image.width, image.height, layers);
+    film_->clear(weighted);
     return *film_;
 }
 
@@ -64,11 +77,10 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
     stop_if_interrupted();
     const Stopwatch watch;
     RenderedFrame frame;
-    const ImageSpec& image = shot.shot().image;
-    Film& film = cleared_film(image.width, image.height, layers);
     const std::vector<SceneSnapshot> parts = make_snapshots(shot, time);
     const int total = shot.shot().render.samples;
     const std::vector<SampleRange> ranges = deal_samples(weights_of(parts), total);
+    Film& film = cleared_film(shot.shot().image, layers, needs_weights(parts, ranges, total));
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (ranges[i].count == 0) continue;
         device_->set_frame(parts[i]);
@@ -76,6 +88,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
         pass.first_sample = ranges[i].first;
         pass.sample_count = ranges[i].count;
         pass.total_samples = total;
+        pass.dealt_share = static_cast<double>(ranges[i].count) / total;
         pass.cancel = &interrupt_requested();
         if (progress)
             pass.progress = [&, range = ranges[i]](double fraction) {
@@ -87,6 +100,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
         stop_if_interrupted();
     }
     frame.image = film.develop();
+    expose(frame.image, exposure_factor(shot.shot().shutter, shot.timing().fps));
     frame.seconds = watch.seconds();
     return frame;
 }

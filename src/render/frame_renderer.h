@@ -33,7 +33,7 @@ public:
                          const std::function<void(double fraction)>& progress = {});
 
 private:
-    Film& cleared_film(int width, int height, const FilmLayers& layers);
+    Film& cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted);
 
     Device* device_;
     std::optional<Film> film_;

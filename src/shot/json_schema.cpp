@@ -31,7 +31,9 @@ Json with_unit_schema(const FieldSpec& field) {
         if (!units.empty()) units += '|';
         units += unit.name;
     }
-    std::string pattern = "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? ?(";
+    std::string pattern = "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?";
+    if (field.quantity == Quantity::time) pattern += "(/[0-9]+\\.?[0-9]*)?";
+    pattern += " ?(";
     pattern += units;
     pattern += ")$";
     return {{"type", "string"}, {"pattern", std::move(pattern)}};

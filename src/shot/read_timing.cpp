@@ -1,9 +1,8 @@
-// timing, image and shutter.
+// timing and image.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <numbers>
 #include <optional>
 
 #include "shot/section_readers.h"
@@ -101,35 +100,6 @@ std::optional<std::vector<int>> read_frames(const Field& field) {
     }
 }
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
-
-/// Opening and closing for a shutter that is open for `length` frames; in the order of the phase's choices.
-Shutter shutter_of(double length, int phase) {
-    if (phase == 0) return {0, length};
-    if (phase == 1) return {-length / 2, length / 2};
-    return {-length, 0};
-}
-
-Shutter read_shutter_interval(const Section& section) {
-    section.exclusive("angle", "open");
-    section.exclusive("angle", "close");
-    section.exclusive("phase", "open");
-    section.exclusive("phase", "close");
-    const Field open = section["open"], close = section["close"];
-    if (!open || !close) {
-        const Field& given = open ? open : close;
-        given.error(fmt::format("{} stands alone", given.name),
-                    "give both open and close, in frames: shutter: { open: -0.25, close: 0.25 }");
-        return {};
-    }
-    const auto open_frames = read_number(open), close_frames = read_number(close);
-    if (!open_frames || !close_frames) return {};
-    if (*close_frames < *open_frames)
-        close.error(fmt::format("shutter.close is {}, before shutter.open at {}", close.node->text, open.node->text),
-                    "expected a close that is not before open");
-    return {*open_frames, *close_frames};
-}
-
 }  // namespace
 
 ReadTiming read_timing(const Section& shot) {
@@ -171,22 +141,6 @@ ImageSpec read_image(const Section& shot) {
             size.with(item, fmt::format("image.size[{}]", i)).mismatch();
     }
     return image;
-}
-
-Shutter read_shutter(const Section& shot) {
-    const Field field = shot["shutter"];
-    if (!field) return {};
-    if (!field.node->is_map()) {
-        const bool zero = field.node->is_scalar() && !field.node->quoted && field.node->text == "0";
-        if (!zero) field.mismatch("a bare shutter can only be 0, for no motion blur");
-        return {0, 0};
-    }
-    const Section section = shot.section("shutter");
-    read_choice_index(section["exposure"]);
-    if (section.has("open") || section.has("close")) return read_shutter_interval(section);
-    double angle_rad = kFullTurn / 2;
-    assign(angle_rad, read_number(section["angle"]));
-    return shutter_of(angle_rad / kFullTurn, read_choice_index(section["phase"]).value_or(0));
 }
 
 }  // namespace kadr

@@ -129,7 +129,8 @@ std::vector<Diagnostic> Problems::take_errors() {
 namespace {
 /// A track where the format has a constant.
 bool is_keyed_constant(const Field& field) {
-    return field.node->is_map() && field.node->find("keys") && !(field.spec->forms & kTrack);
+    return field.node->is_map() && field.node->find("keys") && !(field.spec->forms & kTrack) &&
+           !find_field(std::string(field.spec->path) + ".keys");  // unless its own map has keys
 }
 }  // namespace
 

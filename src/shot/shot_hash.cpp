@@ -43,6 +43,11 @@ private:
         (*this)(track.interpolation, track.keys.size());
         for (const Key<T>& key : track.keys) (*this)(key.time_s, key.value, key.ease, key.in_tangent, key.out_tangent);
     }
+    void add(const ShutterCurve::Key& key) { (*this)(key.fraction, key.efficiency); }
+    void add(const Shutter& s) {
+        (*this)(s.open_frames, s.close_frames, s.open_s, s.close_s, s.curve.shape, s.curve.keys, s.rolling.direction,
+                s.rolling.duration_s, s.physical);
+    }
     void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
@@ -79,8 +84,7 @@ private:
 void hash_shot(const Shot& shot, Hasher& hasher) {
     Feed feed(hasher);
     feed(shot.timing.fps, shot.timing.first, shot.image.width, shot.image.height, shot.image.pixel_aspect);
-    feed(shot.scenes, shot.camera, shot.shutter.open_frames, shot.shutter.close_frames, shot.lights, shot.environment,
-         shot.use_scene_lights);
+    feed(shot.scenes, shot.camera, shot.shutter, shot.lights, shot.environment, shot.use_scene_lights);
     feed(shot.render, shot.output.aovs);
 }
 

@@ -38,6 +38,18 @@ const UnitSpec* find_unit(std::string_view name, Quantity quantity) {
     return nullptr;
 }
 
+/// Takes "/48" off the front of what follows a time's number, as shutters are labelled.
+/// @return false where the denominator is no number above 0
+bool divide(const char*& at, const char* end, double& number) {
+    if (at == end || *at != '/') return true;
+    double divisor = 0;
+    const auto [rest, error] = std::from_chars(at + 1, end, divisor);
+    if (error != std::errc() || !(divisor > 0) || !std::isfinite(divisor)) return false;
+    at = rest;
+    number /= divisor;
+    return true;
+}
+
 ParsedQuantity problem(ParsedQuantity::Problem kind) {
     ParsedQuantity result;
     result.problem = kind;
@@ -103,9 +115,10 @@ ParsedQuantity parse_quantity(std::string_view text, Quantity quantity) {
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     if (!has_digit_soon(text)) return problem(Problem::not_a_number);
     double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc::result_out_of_range) return problem(Problem::out_of_range);
     if (error != std::errc()) return problem(Problem::not_a_number);
+    if (quantity == Quantity::time && !divide(end, text.data() + text.size(), number)) return problem(Problem::not_a_number);
     const std::string_view name = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
     ParsedQuantity result;
     result.unit = name;

@@ -51,7 +51,7 @@ struct ParsedQuantity {
     bool in_frames = false;  ///< a time written in frames: `value` is the number of frames
 };
 
-/// Parses "24 mm", "2.5s", "180 deg", "12 f" or a bare number. Hexadecimal, ".inf" and ".nan" are no numbers here.
+/// Parses "24 mm", "2.5s", "180 deg", "12 f" or a bare number; a time also as a fraction, "1/48 s". Hexadecimal, ".inf" and ".nan" are no numbers here.
 /// Times in frames come back as frames (`in_frames`): their seconds depend on the shot.
 ParsedQuantity parse_quantity(std::string_view text, Quantity quantity);
 

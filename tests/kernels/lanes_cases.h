@@ -5,6 +5,7 @@
 #include "kernels/bsdf/bsdf.h"
 #include "kernels/camera/camera.h"
 #include "kernels/camera/filter.h"
+#include "kernels/camera/shutter.h"
 #include "kernels/light/environment.h"
 #include "kernels/light/light.h"
 #include "kernels/sampler/sobol.h"
@@ -27,6 +28,8 @@ struct CaseWorld {
     const EnvironmentMap* environment;
     const Texture* textures;
     int texture_count;
+    const Shutter* shutters;
+    int shutter_count;
 };
 
 /// Collects results; what is not written stays 0.
@@ -60,6 +63,16 @@ void case_filter(const CaseWorld& world, const F* in, Outputs<F>& out) {
         F weight;
         sample_filter(world.filters[i], Vec2<F>{in[0], in[1]}, offset, weight);
         out.add(offset), out.add(weight);
+    }
+}
+
+template <class F>
+void case_shutter(const CaseWorld& world, const F* in, Outputs<F>& out) {
+    for (int i = 0; i < world.shutter_count; ++i) {
+        const F line = line_of_pixel<F>(world.shutters[i].direction, truncate(in[0] * F(64.0f)), truncate(in[1] * F(48.0f)), 64, 48);
+        F time, weight;
+        sample_shutter(world.shutters[i], line, in[2], time, weight);
+        out.add(time), out.add(weight);
     }
 }
 
@@ -133,12 +146,12 @@ void run_case(const CaseWorld& world, int index, const float* inputs, float* out
         for (F& r : results) r = F(0.0f);
         Outputs<F> out{results};
         using Case = void (*)(const CaseWorld&, const F*, Outputs<F>&);
-        constexpr Case kCases[] = {case_sampler<F>,  case_filter<F>,      case_camera<F>, case_bsdf<F>,
-                                   case_analytic<F>, case_environment<F>, case_texture<F>};
-        if (index < 7)
+        constexpr Case kCases[] = {case_sampler<F>,  case_filter<F>,      case_camera<F>,  case_bsdf<F>,
+                                   case_analytic<F>, case_environment<F>, case_texture<F>, case_shutter<F>};
+        if (index < 8)
             kCases[index](world, in, out);
         else
-            case_light(world, index - 7, in, out);
+            case_light(world, index - 8, in, out);
         for (int i = 0; i < kCaseOutputs; ++i) Memory<F>::store(outputs + 8 * i + first, results[i]);
     }
 }

@@ -23,6 +23,7 @@ public:
         build_filter(FilterKind::gaussian, 1.5f, filters_[1]);
         build_filter(FilterKind::mitchell, 2.0f, filters_[2]);
         build_filter(FilterKind::blackman_harris, 0.75f, filters_[3]);
+        make_shutters();
         make_lights();
         Random random(3);
         for (Vec3f& t : texels_) t = {random(), random() * random(), random()};
@@ -43,11 +44,25 @@ public:
                   static_cast<int>(lights_.size()),
                   &environment_,
                   textures_.data(),
-                  4};
+                  4,
+                  shutters_.data(),
+                  static_cast<int>(shutters_.size())};
     }
     const CaseWorld& get() const { return world_; }
 
 private:
+    /// Plain; a curve; a rolling one cut by its part; lines that open in an instant.
+    void make_shutters() {
+        constexpr float kN = Shutter::kIntervals;
+        for (std::size_t s = 1; s < shutters_.size(); ++s) {
+            shutters_[s].plain = false;
+            for (int i = 0; i <= Shutter::kIntervals; ++i) shutters_[s].passed[i] = static_cast<float>(i) * static_cast<float>(i) / (kN * kN);
+        }
+        shutters_[2].direction = RollingDirection::up;
+        shutters_[2].first_open = -0.4f, shutters_[2].delay = 0.9f, shutters_[2].length = 0.7f, shutters_[2].weight = 1.7f;
+        shutters_[3] = shutters_[2];
+        shutters_[3].direction = RollingDirection::right, shutters_[3].length = 0.0f;
+    }
     void make_lights() {
         for (std::size_t i = 0; i < lights_.size(); ++i) {
             for (int k = 0; k < 3; ++k) {
@@ -76,6 +91,7 @@ private:
                                     {{0, 2, 1}, {0, -0.17364818f, 0, -0.98480775f}, 0.7f, 0.5f, 0.1f, 2.0f}}};
     std::array<Camera, 3> cameras_;
     std::array<FilterTable, 4> filters_;
+    std::array<Shutter, 4> shutters_;
     std::array<std::array<Light, 3>, 9> lights_;
     std::array<const Light*, 9> pointers_;
     std::array<int, 9> counts_{1, 3, 2, 1, 3, 1, 2, 1, 3};
@@ -107,7 +123,7 @@ TEST(Lanes, AgreeToTheLastBit) {
     alignas(32) Results narrow, wide;
     for (int round = 0; round < 2000; ++round) {
         fill(random, inputs.data());
-        for (int index = 0; index < 7 + world.get().light_count; ++index) {
+        for (int index = 0; index < 8 + world.get().light_count; ++index) {
             run_case<float>(world.get(), index, inputs.data(), narrow.data());
             run_case_avx2(world.get(), index, inputs.data(), wide.data());
             for (std::size_t i = 0; i < narrow.size(); ++i) {

@@ -34,6 +34,7 @@ private:
         beauty.b += count * 0.25f * scale;
         beauty.alpha += static_cast<float>(count);
         film.samples(x, y) += count;
+        if (film.weighted()) film.weight(x, y) += static_cast<float>(count);
     }
     int frame_ = 0;
     unsigned seed_ = 0;

@@ -163,7 +163,7 @@ image: { size: [3, 4] })",
          R"(shot.yaml:4:10: error: shutter is 180
     shutter: 180
              ^~~
-  expected a map of angle, phase, open, close, exposure; a bare shutter can only be 0, for no motion blur)"},
+  expected a map of angle, time, phase, open, close, curve, exposure, rolling; a bare shutter can only be 0, for no motion blur)"},
         {std::string(kBase) + R"(shutter: { open: 0.5, close: 0.25 })",
          R"(shot.yaml:4:30: error: shutter.close is 0.25, before shutter.open at 0.5
     shutter: { open: 0.5, close: 0.25 }
@@ -183,11 +183,6 @@ shot.yaml:4:32: error: shutter.angle and shutter.close exclude each other
     shutter: { angle: 10, open: 0, close: 1 }
                                    ^~~~~
   remove one of the two)"},
-        {std::string(kBase) + R"(shutter: { exposure: physical })",
-         R"(shot.yaml:4:22: error: shutter.exposure: physical is not supported yet
-    shutter: { exposure: physical }
-                         ^~~~~~~~
-  expected constant)"},
         {std::string(kBase) + R"(shutter: { phase: center })",
          R"(shot.yaml:4:19: error: shutter.phase is 'center'
     shutter: { phase: center }

@@ -50,6 +50,7 @@ public:
         job.flat = scene_.flat();
         job.instanced = scene_.instanced();
         job.filter = &filter_;
+        job.shutter = &shutter_;
         if (log) {
             job.log = [](void* user, const LoggedRay& ray) {
                 static_cast<std::vector<LoggedRay>*>(user)->push_back(ray);
@@ -74,6 +75,7 @@ private:
     std::unique_ptr<TileResult> result_;
     std::unique_ptr<TileDriver> driver_;
     kernels::FilterTable filter_{};
+    kernels::Shutter shutter_;
     TileCounters counters_;
 };
 

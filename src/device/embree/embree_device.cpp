@@ -83,6 +83,8 @@ public:
     void set_frame(const SceneSnapshot& snapshot) override {
         const auto begin = std::chrono::steady_clock::now();
         arena_.execute([&] { scene_->set_frame(snapshot); });
+        shutter_ = snapshot.shutter;
+        part_weight_ = snapshot.weight;
         kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
         const double load_s = statistics_.load_s;
         statistics_ = {};
@@ -96,6 +98,9 @@ public:
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
         const kernels::Settings& settings = scene_->view().settings;
+        // A plain part's light is known; of others the kernels know what each line gets.
+        const double dealt = pass.dealt_share > 0 ? pass.dealt_share : part_weight_;
+        shutter_.weight = static_cast<float>((shutter_.plain ? part_weight_ : 1.0) / dealt);
         const int columns = (film.width() + kTileEdge - 1) / kTileEdge,
                   rows = (film.height() + kTileEdge - 1) / kTileEdge;
         tbb::enumerable_thread_specific<Worker> workers([&] {
@@ -132,6 +137,7 @@ private:
         job.flat = scene_->flat();
         job.instanced = scene_->instanced();
         job.filter = &filter_;
+        job.shutter = &shutter_;
         job.x0 = x0;
         job.y0 = y0;
         job.x1 = std::min(x0 + kTileEdge, film.width());
@@ -161,7 +167,8 @@ private:
                     ++film.samples(x, y);
                     ++worker.samples;
                     Film::Beauty& beauty = film.beauty(x, y);
-                    const float w = r.weight[slot];
+                    const float w = r.weight[slot] * r.light[slot];
+                    if (film.weighted()) film.weight(x, y) += r.light[slot];
                     beauty.r += r.radiance[0][slot] * w;
                     beauty.g += r.radiance[1][slot] * w;
                     beauty.b += r.radiance[2][slot] * w;
@@ -171,14 +178,15 @@ private:
     }
 
     static void add_surface(const TileResult& r, int slot, Film::Surface& surface) {
+        const float light = r.light[slot];
         for (int c = 0; c < 3; ++c) {
-            surface.albedo[c] += r.albedo[c][slot];
-            surface.normal[c] += r.normal[c][slot];
+            surface.albedo[c] += r.albedo[c][slot] * light;
+            surface.normal[c] += r.normal[c][slot] * light;
         }
-        for (int c = 0; c < 2; ++c) surface.motion[c] += r.motion[c][slot];
+        for (int c = 0; c < 2; ++c) surface.motion[c] += r.motion[c][slot] * light;
         if (!std::isfinite(r.depth[slot])) return;
-        surface.depth += r.depth[slot];
-        surface.depth_weight += 1;
+        surface.depth += r.depth[slot] * light;
+        surface.depth_weight += light;
     }
 
     int width_;
@@ -187,6 +195,8 @@ private:
     EmbreeDeviceHandle device_;
     std::unique_ptr<EmbreeScene> scene_;
     kernels::FilterTable filter_{};
+    kernels::Shutter shutter_;   ///< of the part at hand
+    double part_weight_ = 1;
     DeviceStatistics statistics_;
 };
 

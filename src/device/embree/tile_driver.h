@@ -12,6 +12,7 @@
 #include "device/embree/path_columns.h"
 #include "device/embree/tile_job.h"
 #include "kernels/camera/camera.h"
+#include "kernels/camera/shutter.h"
 #include "kernels/integrator/direct.h"
 #include "kernels/integrator/path.h"
 
@@ -78,12 +79,14 @@ private:
             const Mask<F> active = first_lanes<F>(total - first);
             const Sampler<F> sampler = make_sampler<F>(x, y, sample, scene.settings.seed);
             Vec2<F> offset{F(0.0f), F(0.0f)}, lens{F(0.5f), F(0.5f)};
-            F weight(1.0f), time(0.0f);
+            F weight(1.0f), time(0.0f), light(1.0f), u_time(0.0f);
             if (!job.centred) {
                 sample_filter(*job.filter, sampler.get_2d(UInt<F>(dimension::kFilter)), offset, weight);
                 lens = sampler.get_2d(UInt<F>(dimension::kLens));
-                time = sampler.get_1d(UInt<F>(dimension::kTime));
+                u_time = sampler.get_1d(UInt<F>(dimension::kTime));
             }
+            const F line = line_of_pixel<F>(job.shutter->direction, x, y, scene.settings.width, scene.settings.height);
+            sample_shutter(*job.shutter, line, u_time, time, light);
             const Vec2<F> film{F(x) + F(0.5f) + offset.x, F(y) + F(0.5f) + offset.y};
             PathState<F> path;
             camera_ray(scene.camera, scene.settings.width, scene.settings.height, film, time, lens, path.origin,
@@ -99,6 +102,7 @@ private:
                 const int s = first + i;
                 for (int c = 0; c < 3; ++c) result_->radiance[c][s] = 0;
                 result_->weight[s] = lane(weight, i);
+                result_->light[s] = lane(light, i);
                 result_->alpha[s] = scene.lights.environment_visible ? 1.0f : 0.0f;
                 if (job.surface_layers) {
                     for (int c = 0; c < 3; ++c) result_->albedo[c][s] = result_->normal[c][s] = 0;
@@ -106,7 +110,7 @@ private:
                     result_->motion[0][s] = result_->motion[1][s] = 0;
                 }
             }
-            append_path<F>(out, path, slot, bits(active));
+            append_path<F>(out, path, slot, bits(active & (light > F(0.0f))));
         }
     }
 

@@ -5,6 +5,7 @@
 
 #include "device/embree/embree_api.h"
 #include "kernels/camera/filter.h"
+#include "kernels/camera/shutter.h"
 #include "kernels/scene/scene_view.h"
 
 namespace kadr {
@@ -18,6 +19,7 @@ inline constexpr int kPathsPerBatch = kTileEdge * kTileEdge * kSamplesPerBatch;
 struct alignas(64) TileResult {
     float radiance[3][kPathsPerBatch];
     float weight[kPathsPerBatch];  ///< of the pixel filter (negative lobes); 1 otherwise
+    float light[kPathsPerBatch];   ///< weight in time (a split or a rolling shutter); 1 otherwise
     float alpha[kPathsPerBatch];
     float albedo[3][kPathsPerBatch], normal[3][kPathsPerBatch];
     float depth[kPathsPerBatch];  ///< metres along the view axis; infinity for the background
@@ -41,6 +43,7 @@ struct TileJob {
     RTCScene flat = nullptr;       ///< geometry relative to the render origin; null when empty
     RTCScene instanced = nullptr;  ///< instances; null when empty
     const kernels::FilterTable* filter = nullptr;
+    const kernels::Shutter* shutter = nullptr;
     int first_sample = 0, sample_count = 0;  ///< of this batch
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;      ///< the tile's pixels
     bool surface_layers = false;
