@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "frame/material_rig.h"
 #include "frame/node_rig.h"
+#include "frame/property_rig.h"
 #include "frame/references.h"
+#include "frame/visibility_rig.h"
 
 namespace kadr {
 
@@ -22,6 +25,9 @@ struct Bindings {
     std::vector<InstanceSeed> seeds;    ///< of nodes that a root reaches
     std::vector<int> light_nodes;       ///< nodes with a light that shines
     int camera_node = -1;               ///< of an authored camera
+    PropertyRig properties;
+    VisibilityRig visibility;
+    MaterialRig materials;
 
     /// World position of a node or of a scene's root.
     glm::dvec3 position_of(const NodeReference& reference, double time_s) const;

@@ -87,12 +87,13 @@ Timing with_frames(const Shot& shot, double longest_s) {
     return timing;
 }
 
-std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig) {
+std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig, const MaterialRig& materials) {
     std::vector<InstanceSeed> seeds;
     std::uint32_t id = 0;
     for (std::size_t node = 0; node < scene.nodes.size(); ++node)
         for (const MeshPrimitive& primitive : scene.nodes[node].primitives) {
-            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(primitive.material), id++};
+            const int material = materials.material_of(rig.file_of(static_cast<int>(node)), primitive);
+            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(material), id++};
             if (rig.reachable(seed.node)) seeds.push_back(seed);
         }
     return seeds;
@@ -105,11 +106,9 @@ std::vector<int> light_nodes_of(const Scene& scene, const NodeRig& rig) {
     return nodes;
 }
 
-bool any_emission(const Scene& scene, const std::vector<InstanceSeed>& seeds) {
-    return std::any_of(seeds.begin(), seeds.end(), [&](const InstanceSeed& seed) {
-        const kernels::Material& material = scene.materials[seed.material];
-        return material.unlit || material.emission.x > 0 || material.emission.y > 0 || material.emission.z > 0;
-    });
+bool any_emission(const Bindings& bindings) {
+    return std::any_of(bindings.seeds.begin(), bindings.seeds.end(),
+                       [&](const InstanceSeed& seed) { return bindings.materials.may_emit(static_cast<int>(seed.material)); });
 }
 
 bool is_black(const EnvironmentSpec& environment) {
@@ -120,7 +119,7 @@ bool is_black(const EnvironmentSpec& environment) {
     return all_zero(environment.color) || all_zero(environment.strength);
 }
 
-std::vector<Diagnostic> warnings_of(const Shot& shot, const Scene& scene, const Bindings& bindings) {
+std::vector<Diagnostic> warnings_of(const Shot& shot, const Bindings& bindings) {
     std::vector<Diagnostic> warnings;
     const SourceLocation file{shot.file.string(), 0, 0};
     const bool lit = !shot.lights.empty() || !bindings.light_nodes.empty();
@@ -129,7 +128,7 @@ std::vector<Diagnostic> warnings_of(const Shot& shot, const Scene& scene, const 
                                       shot.render.integrator == Integrator::direct
                                           ? "the sky of the default environment is only a background under integrator direct; add `lights`"
                                           : "lit by the default sky; add `lights` or `environment`"));
-    if (!lit && shot.environment.given && is_black(shot.environment) && !any_emission(scene, bindings.seeds))
+    if (!lit && shot.environment.given && is_black(shot.environment) && !any_emission(bindings))
         warnings.push_back(warning_at(file, "nothing shines: no lights, a black environment and no emissive material", "every frame will be black"));
     if (bindings.seeds.empty()) warnings.push_back(warning_at(file, "the scenes hold nothing to see", "no node of their default scenes has a mesh"));
     return warnings;
@@ -149,6 +148,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     int camera_node = -1;
     for (std::size_t f = 0; f < scene.files.size(); ++f)
         collect(problems, [&] { clips[f] = playing_clips(scene, f, shot.scenes.at(f)); });
+    for (std::size_t f = 0; f < scene.files.size(); ++f) collect(problems, [&] { check_appearance(scene, f, shot.scenes.at(f)); });
     for (const NodeReference& reference : references_of(shot))
         collect(problems, [&] { references[reference.text] = resolve(scene, reference); });
     if (shot.camera.gltf) collect(problems, [&] { camera_node = resolve_camera(scene, *shot.camera.gltf); });
@@ -158,11 +158,13 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     if (!problems.empty()) throw InputError(std::move(problems));
 
     sequence_ = Sequence(timing_, shot.shutter);
-    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node});
-    bindings->seeds = seeds_of(scene, bindings->rig);
+    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node, PropertyRig(shot, scene, clips), {}, {}});
+    bindings->visibility = VisibilityRig(shot, scene, bindings->properties);
+    bindings->materials = MaterialRig(shot, scene, bindings->properties);
+    bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
     if (shot.use_scene_lights) bindings->light_nodes = light_nodes_of(scene, bindings->rig);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
-    warnings_ = warnings_of(shot, scene, *bindings);
+    warnings_ = warnings_of(shot, *bindings);
     bindings_ = std::move(bindings);
 }
 

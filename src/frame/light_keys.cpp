@@ -164,9 +164,13 @@ void add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneS
     for (const LightSpec& spec : shot.shot().lights)
         add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, near_m,
                  [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
-    for (const int node : shot.bindings().light_nodes)
+    // Switches do not change within a part of the shutter.
+    const VisibilityRig::States states = shot.bindings().visibility.at(0.5 * (open_s + close_s));
+    for (const int node : shot.bindings().light_nodes) {
+        if (!states.visible(node)) continue;
         add_keys(shot.bindings().rig.key_times_of(node, open_s, close_s), open_s, close_s, near_m,
                  [&](double time) { return light_at(shot, node, time, origin); }, snapshot);
+    }
 }
 
 std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s) {

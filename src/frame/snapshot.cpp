@@ -22,6 +22,7 @@ namespace kadr {
 namespace {
 
 constexpr std::size_t kMostParts = 64;
+constexpr int kDeepestChange = 4;  // what changes fast is followed in up to 2^4 steps
 constexpr int kDeepestSplit = 6;  // 2^6 parts of 128 steps of 10 degrees: more than 200 turns in one shutter
 constexpr glm::dvec3 kSky{0.53, 0.81, 0.92};
 
@@ -51,7 +52,8 @@ std::vector<double> environment_discontinuities(const EnvironmentSpec& environme
 std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
     std::vector<double> all;
     for (const std::vector<double>& times : {shot.bindings().rig.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
-                                             light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s)})
+                                             light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
+                                             shot.bindings().visibility.discontinuities(begin_s, end_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
         all.insert(all.end(), times.begin(), times.end());
     std::sort(all.begin(), all.end());
     // Jumps of different tracks that fall together differ by the rounding of their clips' times.
@@ -95,6 +97,15 @@ EnvironmentSnapshot environment_at(const BoundShot& shot, double time_s) {
     environment.radiance = to_float(spec.image ? glm::dvec3(strength) : evaluate(spec.color, time_s) * strength);
     environment.rotate_rad = static_cast<float>(evaluate(spec.rotate_rad, time_s));
     return environment;
+}
+
+/// Masks out what is hidden. Switches do not change within a part.
+void hide_instances(const BoundShot& shot, double time_s, std::vector<SnapshotInstance>& instances) {
+    const Bindings& bindings = shot.bindings();
+    if (bindings.visibility.idle()) return;
+    const VisibilityRig::States states = bindings.visibility.at(time_s);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        if (!states.visible(bindings.seeds[i].node)) instances[i].mask = 0;
 }
 
 unsigned mixed_seed(std::uint32_t seed, int frame) {
@@ -193,7 +204,11 @@ private:
         const Part inside = inside_of(part);
         SceneSnapshot snapshot;
         snapshot.render_origin = origin_;
+        const double middle_s = 0.5 * (inside.open_s + inside.close_s);
+        if (depth < kDeepestChange && inside.close_s > inside.open_s && shot_.bindings().materials.changes_fast(inside.open_s, inside.close_s)) return add_halves(part, depth);
         if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
+        hide_instances(shot_, middle_s, snapshot.instances);
+        snapshot.materials = shot_.bindings().materials.table(middle_s);
         snapshot.frame_number = frame_.number;
         snapshot.open_s = part.open_s;
         snapshot.close_s = part.close_s;
@@ -202,7 +217,7 @@ private:
         snapshot.camera = make_camera(shot_);
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
         add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
-        snapshot.environment = environment_at(shot_, 0.5 * (inside.open_s + inside.close_s));
+        snapshot.environment = environment_at(shot_, middle_s);
         snapshot.settings = settings_of(shot_.shot(), frame_.number);
         snapshot.geometry_key = key_of(snapshot);
         snapshots_.push_back(std::move(snapshot));

@@ -64,6 +64,9 @@ struct SceneSnapshot {
     glm::dvec3 render_origin{0};
     std::vector<SnapshotInstance> instances;
     MotionFrames motion;                       ///< headers parallel to instances
+    /// The whole table [material] that replaces the scene's in this part; empty: the scene's own. Entries beyond the
+    /// scene's are copies that single entries of the shot have changed.
+    std::vector<kernels::Material> materials;
     std::vector<kernels::CameraKey> camera_keys;
     kernels::Camera camera{};                  ///< keys pointer is null here; the device points it at its own copy
     std::vector<LightKeys> lights;

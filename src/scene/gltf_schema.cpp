@@ -59,6 +59,9 @@ constexpr Property kProperties[] = {
     {"root", "extensions", Type::object, "root_extensions"},
     {"root_extensions", "KHR_lights_punctual", Type::object, "light_list"},
     {"light_list", "lights", Type::objects, "light"},
+    {"root_extensions", "KHR_materials_variants", Type::object, "variant_list"},
+    {"variant_list", "variants", Type::objects, "variant", kRequired},
+    {"variant", "name", Type::string, {}, kRequired},
 
     {"asset", "version", Type::string, {}, kRequired},
     {"asset", "minVersion", Type::string},
@@ -86,6 +89,9 @@ constexpr Property kProperties[] = {
     {"channel", "target", Type::object, "channel_target", kRequired},
     {"channel_target", "node", Type::index, "nodes"},
     {"channel_target", "path", Type::string, {}, kRequired},
+    {"channel_target", "extensions", Type::object, "channel_target_extensions"},
+    {"channel_target_extensions", "KHR_animation_pointer", Type::object, "animation_pointer"},
+    {"animation_pointer", "pointer", Type::string, {}, kRequired},
     {"animation_sampler", "input", Type::index, "accessors", kRequired},
     {"animation_sampler", "output", Type::index, "accessors", kRequired},
     {"animation_sampler", "interpolation", Type::string, "LINEAR|STEP|CUBICSPLINE"},
@@ -151,6 +157,11 @@ constexpr Property kProperties[] = {
     {"primitive", "material", Type::index, "materials"},
     {"primitive", "mode", Type::integer, {}, kOptional, 0, 6},
     {"primitive", "targets", Type::index_maps, "accessors"},
+    {"primitive", "extensions", Type::object, "primitive_extensions"},
+    {"primitive_extensions", "KHR_materials_variants", Type::object, "variant_mappings"},
+    {"variant_mappings", "mappings", Type::objects, "variant_mapping", kRequired},
+    {"variant_mapping", "material", Type::index, "materials", kRequired},
+    {"variant_mapping", "variants", Type::indices, "variants", kRequired},
 
     {"node", "name", Type::string},
     {"node", "camera", Type::index, "cameras"},
@@ -164,6 +175,8 @@ constexpr Property kProperties[] = {
     {"node", "extensions", Type::object, "node_extensions"},
     {"node_extensions", "KHR_lights_punctual", Type::object, "light_use"},
     {"light_use", "light", Type::index, "lights", kRequired},
+    {"node_extensions", "KHR_node_visibility", Type::object, "visibility"},
+    {"visibility", "visible", Type::boolean},
 
     {"light", "name", Type::string},
     {"light", "type", Type::string, "directional|point|spot", kRequired},
@@ -353,10 +366,13 @@ private:
     }
 
     std::size_t count_of(std::string_view collection) const {
+        // Collections of extensions.
+        static const std::map<std::string_view, json::json_pointer> kElsewhere{
+            {"lights", json::json_pointer("/extensions/KHR_lights_punctual/lights")},
+            {"variants", json::json_pointer("/extensions/KHR_materials_variants/variants")}};
         const json* list = nullptr;
-        if (collection == "lights") {
-            static const json::json_pointer kLights("/extensions/KHR_lights_punctual/lights");
-            if (document_.contains(kLights)) list = &document_.at(kLights);
+        if (const auto elsewhere = kElsewhere.find(collection); elsewhere != kElsewhere.end()) {
+            if (document_.contains(elsewhere->second)) list = &document_.at(elsewhere->second);
         } else if (const auto found = document_.find(collection); found != document_.end()) {
             list = &*found;
         }

@@ -25,18 +25,14 @@ double number_at(const tinygltf::Value& object, const char* key, int index, doub
     return object.Get(key).Get(index).GetNumberAsDouble();
 }
 
-/// uv' = T * R * S * uv, where a positive rotation turns the coordinates counter-clockwise as seen in an image whose v grows
-/// downward.  Source: KHR_texture_transform (the text; its TextureTransformTest tells the sign).
-void apply_transform(const tinygltf::Value& transform, TextureSlot& slot) {
-    const double rotation = number(transform, "rotation", 0);
-    const double c = std::cos(rotation), s = std::sin(rotation);
-    const double su = number_at(transform, "scale", 0, 1), sv = number_at(transform, "scale", 1, 1);
-    slot.m00 = static_cast<float>(c * su);
-    slot.m01 = static_cast<float>(s * sv);
-    slot.m02 = static_cast<float>(number_at(transform, "offset", 0, 0));
-    slot.m10 = static_cast<float>(-s * su);
-    slot.m11 = static_cast<float>(c * sv);
-    slot.m12 = static_cast<float>(number_at(transform, "offset", 1, 0));
+TextureTransform transform_of(const tinygltf::ExtensionMap& extensions) {
+    TextureTransform result;
+    const tinygltf::Value* transform = extension(extensions, "KHR_texture_transform");
+    if (!transform) return result;
+    result.offset = {number_at(*transform, "offset", 0, 0), number_at(*transform, "offset", 1, 0)};
+    result.rotation_rad = number(*transform, "rotation", 0);
+    result.scale = {number_at(*transform, "scale", 0, 1), number_at(*transform, "scale", 1, 1)};
+    return result;
 }
 
 template <class Info>
@@ -59,8 +55,7 @@ struct SlotReader {
             document.fail(fmt::format("{}/{}", pointer, member), fmt::format("uses TEXCOORD_{}: more than two sets of texture coordinates are not supported yet", slot.uv_set),
                           "expected texCoord 0 or 1");
         slot.texture = textures.use(info.index, srgb);
-        if (const tinygltf::Value* transform = extension(info.extensions, "KHR_texture_transform")) apply_transform(*transform, slot);
-        return slot;
+        return transformed(slot, transform_of(info.extensions));
     }
 };
 
@@ -74,7 +69,35 @@ kernels::Vec3f vector3(const std::vector<double>& values, float otherwise) {
     return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
 }
 
+double emissive_strength(const tinygltf::Material& source) {
+    const tinygltf::Value* strength = extension(source.extensions, "KHR_materials_emissive_strength");
+    return strength ? number(*strength, "emissiveStrength", 1) : 1;
+}
+
 }  // namespace
+
+/// Source: KHR_texture_transform (the text; its TextureTransformTest tells the sign of the rotation).
+TextureSlot transformed(TextureSlot slot, const TextureTransform& transform) {
+    const double c = std::cos(transform.rotation_rad), s = std::sin(transform.rotation_rad);
+    slot.m00 = static_cast<float>(c * transform.scale.x);
+    slot.m01 = static_cast<float>(s * transform.scale.y);
+    slot.m02 = static_cast<float>(transform.offset.x);
+    slot.m10 = static_cast<float>(-s * transform.scale.x);
+    slot.m11 = static_cast<float>(c * transform.scale.y);
+    slot.m12 = static_cast<float>(transform.offset.y);
+    return slot;
+}
+
+MaterialSource material_source(const GltfDocument& document, std::size_t index) {
+    const tinygltf::Material& source = document.model().materials[index];
+    MaterialSource result;
+    result.index = static_cast<int>(index);
+    if (source.emissiveFactor.size() == 3) result.emissive = {source.emissiveFactor[0], source.emissiveFactor[1], source.emissiveFactor[2]};
+    result.emissive_strength = emissive_strength(source);
+    result.transforms = {transform_of(source.pbrMetallicRoughness.baseColorTexture.extensions), transform_of(source.pbrMetallicRoughness.metallicRoughnessTexture.extensions),
+                         transform_of(source.normalTexture.extensions), transform_of(source.emissiveTexture.extensions), transform_of(source.occlusionTexture.extensions)};
+    return result;
+}
 
 int normal_uv_set(const GltfDocument& document, int material) {
     if (material < 0) return -1;
@@ -91,9 +114,7 @@ kernels::Material read_material(const GltfDocument& document, std::size_t index,
     material.alpha = pbr.baseColorFactor.size() == 4 ? static_cast<float>(pbr.baseColorFactor[3]) : 1.0f;
     material.metallic = static_cast<float>(pbr.metallicFactor);
     material.roughness = static_cast<float>(pbr.roughnessFactor);
-    material.emission = vector3(source.emissiveFactor, 0);
-    if (const tinygltf::Value* strength = extension(source.extensions, "KHR_materials_emissive_strength"))
-        material.emission = material.emission * static_cast<float>(number(*strength, "emissiveStrength", 1));
+    material.emission = vector3(source.emissiveFactor, 0) * static_cast<float>(emissive_strength(source));
     material.unlit = extension(source.extensions, "KHR_materials_unlit") != nullptr;
     material.alpha_mode = alpha_mode(source.alphaMode);
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);

@@ -10,6 +10,9 @@ namespace kadr {
 /// @throws InputError for texture coordinates beyond the second set
 kernels::Material read_material(const GltfDocument& document, std::size_t index, TextureSet& textures);
 
+/// The factors that read_material multiplied.
+MaterialSource material_source(const GltfDocument& document, std::size_t index);
+
 /// Texture coordinates of the material's normal texture (with KHR_texture_transform's override); -1: it has none.
 int normal_uv_set(const GltfDocument& document, int material);
 

@@ -35,6 +35,11 @@ int light_of(const tinygltf::Node& node) {
     return found != node.extensions.end() && found->second.Has("light") ? found->second.Get("light").GetNumberAsInt() : -1;
 }
 
+bool visibility_of(const tinygltf::Node& node) {
+    const auto found = node.extensions.find("KHR_node_visibility");
+    return found == node.extensions.end() || !found->second.Has("visible") || found->second.Get("visible").Get<bool>();
+}
+
 Node read_node(const GltfDocument& document, std::size_t index) {
     const tinygltf::Node& source = document.model().nodes[index];
     const std::string pointer = fmt::format("/nodes/{}", index);
@@ -50,6 +55,7 @@ Node read_node(const GltfDocument& document, std::size_t index) {
     node.scale = vector3(source.scale, glm::dvec3(1));
     node.children = source.children;
     node.light = light_of(source);
+    node.visible = visibility_of(source);
     node.camera = source.camera;
     return node;
 }

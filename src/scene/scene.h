@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "kernels/scene/scene_types.h"
+#include "scene/property_channel.h"
 
 namespace kadr {
 
@@ -59,9 +60,34 @@ struct SceneCamera {
     double znear = 0, zfar = 0;          ///< zfar 0: infinite
 };
 
+/// KHR_texture_transform: uv' = T(offset) * R(rotation) * S(scale) * uv.
+struct TextureTransform {
+    glm::dvec2 offset{0};
+    double rotation_rad = 0;  ///< counter-clockwise as seen in an image whose v grows downward
+    glm::dvec2 scale{1};
+    bool operator==(const TextureTransform&) const = default;
+};
+/// The slot with the transform as its matrix.
+kernels::TextureSlot transformed(kernels::TextureSlot slot, const TextureTransform& transform);
+
+/// What a material was made of, for tracks that change one of its factors.
+struct MaterialSource {
+    int index = -1;            ///< of the material in its file; -1: glTF's default material
+    glm::dvec3 emissive{0};    ///< the factor; times the strength it is Material::emission
+    double emissive_strength = 1;
+    std::array<TextureTransform, kTextureUses> transforms;  ///< [TextureUse]
+};
+
+/// The material that a primitive has under a variant of its file.
+struct VariantMaterial {
+    int variant = -1;    ///< index into SceneFile::variants
+    int material = -1;   ///< index into Scene::materials
+};
+
 struct MeshPrimitive {
     int geometry = -1;   ///< index into Scene::geometries
     int material = -1;   ///< index into Scene::materials (always set: the glTF default material is added)
+    std::vector<VariantMaterial> variants = {};  ///< KHR_materials_variants; variants that are not here keep `material`
 };
 
 struct Node {
@@ -75,6 +101,7 @@ struct Node {
     glm::dvec3 scale{1};
     std::vector<MeshPrimitive> primitives;
     int light = -1, camera = -1; ///< indices into Scene::lights, Scene::cameras
+    bool visible = true;         ///< KHR_node_visibility: false hides the node and all below it
 };
 
 /// One animated node of a clip. Absent tracks leave the node's own value.
@@ -88,6 +115,7 @@ struct Clip {
     std::string name;
     double begin_s = 0, end_s = 0;
     std::vector<NodeChannels> channels;
+    std::vector<PropertyChannel> properties = {};  ///< what the clip drives beside nodes' transforms
 };
 
 /// The part of a Scene that came from one glTF file of the shot. Ranges are half open.
@@ -98,6 +126,8 @@ struct SceneFile {
     std::vector<int> roots;      ///< nodes of the file's default scene
     int first_node = 0, node_count = 0;
     int first_clip = 0, clip_count = 0;
+    int first_material = 0, material_count = 0;  ///< entries of the same file share them
+    std::vector<std::string> variants;           ///< names; KHR_materials_variants
 };
 
 /// Everything the glTF files of a shot hold, merged into one index space; built once a shot.
@@ -107,6 +137,7 @@ struct Scene {
     std::vector<GeometryData> geometries;
     std::vector<kernels::Material> materials;
     std::vector<std::string> material_names;
+    std::vector<MaterialSource> material_sources;   ///< [material]
     std::vector<TextureData> textures;   ///< one per (image, colour space, sampler)
     std::vector<SceneLight> lights;
     std::vector<SceneCamera> cameras;

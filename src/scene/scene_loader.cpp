@@ -13,6 +13,7 @@
 #include "scene/node_reader.h"
 #include "scene/scene.h"
 #include "scene/texture_set.h"
+#include "scene/variant_reader.h"
 
 namespace kadr {
 
@@ -51,6 +52,7 @@ public:
         SceneFile file;
         file.content = document_.content();
         file.roots = roots;
+        file.variants = read_variants(document_);
         scene_.files.push_back(std::move(file));
         return std::move(scene_);
     }
@@ -60,7 +62,8 @@ private:
         std::size_t mesh, index;
         int geometry;          ///< position in keys_
         int material;          ///< glTF's; -1: the default
-        bool drop_normal_map;  ///< the primitive lacks the texture's coordinates
+        int uv_set;            ///< that tangents are made for; -1: none, and normal textures are left out
+        std::vector<VariantMapping> variants;
     };
 
     const tinygltf::Primitive& source(std::size_t mesh, std::size_t index) const { return document_.model().meshes[mesh].primitives[index]; }
@@ -79,18 +82,25 @@ private:
 
     void collect(std::size_t mesh, std::size_t index, std::map<GeometryKey, int>& known) {
         const tinygltf::Primitive& primitive = source(mesh, index);
-        int uv_set = normal_uv_set(document_, primitive.material);
-        const bool drop = uv_set >= 0 && !primitive.attributes.count(fmt::format("TEXCOORD_{}", uv_set));
-        if (drop) {
-            document_.warnings.push_back(document_.warning(fmt::format("/meshes/{}/primitives/{}", mesh, index),
-                                                           fmt::format("has no TEXCOORD_{}; the normal texture of material {} is left out", uv_set, primitive.material)));
-            uv_set = -1;
-        }
+        std::vector<VariantMapping> variants = read_variant_mappings(document_, mesh, index);
+        const int uv_set = tangent_uv_set(mesh, index, variants);
         const GeometryKey key{primitive.attributes, primitive.indices, primitive.mode, uv_set};
         const auto [place, added] = known.try_emplace(key, static_cast<int>(built_from_.size()));
         if (added) built_from_.push_back({{mesh, index}, uv_set});
         of_mesh_[mesh].push_back(static_cast<int>(primitives_.size()));
-        primitives_.push_back({mesh, index, place->second, primitive.material, drop});
+        primitives_.push_back({mesh, index, place->second, primitive.material, uv_set, std::move(variants)});
+    }
+
+    /// The texture coordinates that the primitive's tangents follow: those of the normal texture of its material, or
+    /// else of the first variant that has one; -1 where there is none, or the primitive lacks them.
+    int tangent_uv_set(std::size_t mesh, std::size_t index, const std::vector<VariantMapping>& variants) {
+        const tinygltf::Primitive& primitive = source(mesh, index);
+        int material = primitive.material, uv_set = normal_uv_set(document_, material);
+        for (std::size_t v = 0; uv_set < 0 && v < variants.size(); ++v) uv_set = normal_uv_set(document_, material = variants[v].material);
+        if (uv_set < 0 || primitive.attributes.count(fmt::format("TEXCOORD_{}", uv_set))) return uv_set;
+        document_.warnings.push_back(document_.warning(fmt::format("/meshes/{}/primitives/{}", mesh, index),
+                                                       fmt::format("has no TEXCOORD_{}; the normal texture of material {} is left out", uv_set, material)));
+        return -1;
     }
 
     /// Accessors may be shared by any number of primitives, so a small file can ask for any amount of memory.
@@ -139,26 +149,40 @@ private:
             for (const int p : of_mesh_[static_cast<std::size_t>(mesh)]) {
                 const Primitive& primitive = primitives_[static_cast<std::size_t>(p)];
                 const int geometry = geometry_of_[static_cast<std::size_t>(primitive.geometry)];
-                if (geometry >= 0) scene_.nodes[i].primitives.push_back({geometry, material_index(primitive)});
+                if (geometry >= 0) scene_.nodes[i].primitives.push_back(attached(primitive, geometry));
             }
         }
     }
 
+    MeshPrimitive attached(const Primitive& primitive, int geometry) {
+        MeshPrimitive result{geometry, material_index(primitive.material, primitive.uv_set)};
+        for (const VariantMapping& mapping : primitive.variants) {
+            const int material = material_index(mapping.material, primitive.uv_set);
+            for (const int variant : mapping.variants) result.variants.push_back({variant, material});
+        }
+        return result;
+    }
+
     /// Materials are read when first used, so that textures of unused ones are not decoded.
-    int material_index(const Primitive& primitive) {
-        const auto [place, added] = materials_.try_emplace({primitive.material, primitive.drop_normal_map}, static_cast<int>(scene_.materials.size()));
+    /// @param gltf_material  -1: glTF's default material; @param uv_set  that the primitive has tangents for
+    int material_index(int gltf_material, int uv_set) {
+        const int normal_set = normal_uv_set(document_, gltf_material);
+        const bool drop_normal_map = normal_set >= 0 && normal_set != uv_set;
+        const auto [place, added] = materials_.try_emplace({gltf_material, drop_normal_map}, static_cast<int>(scene_.materials.size()));
         if (!added) return place->second;
-        if (primitive.material < 0) {
-            scene_.materials.push_back({});  // glTF's default material
+        if (gltf_material < 0) {
+            scene_.materials.push_back({});
             scene_.material_names.push_back("default");
+            scene_.material_sources.push_back({});
             return place->second;
         }
-        const auto index = static_cast<std::size_t>(primitive.material);
+        const auto index = static_cast<std::size_t>(gltf_material);
         kernels::Material material = read_material(document_, index, textures_);
-        if (primitive.drop_normal_map) material.normal_texture = {};
+        if (drop_normal_map) material.normal_texture = {};
         scene_.materials.push_back(material);
         const std::string& name = document_.model().materials[index].name;
         scene_.material_names.push_back(name.empty() ? fmt::format("material {}", index) : name);
+        scene_.material_sources.push_back(material_source(document_, index));
         return place->second;
     }
 
@@ -174,7 +198,7 @@ private:
 
 /// Where a file's shared tables begin in the whole scene.
 struct Offsets {
-    int geometry, material, light, camera;
+    int geometry, material, light, camera, material_count;
 };
 
 template <class T>
@@ -194,8 +218,21 @@ Offsets append_tables(Scene& scene, Scene& file) {
                                            &material.emissive_texture, &material.occlusion_texture})
             slot->texture = shifted(slot->texture, texture);
     append(scene.material_names, file.material_names);
+    append(scene.material_sources, file.material_sources);
+    const int material_count = static_cast<int>(file.materials.size());
     append(scene.warnings, file.warnings);
-    return {append(scene.geometries, file.geometries), append(scene.materials, file.materials), append(scene.lights, file.lights), append(scene.cameras, file.cameras)};
+    return {append(scene.geometries, file.geometries), append(scene.materials, file.materials), append(scene.lights, file.lights), append(scene.cameras, file.cameras), material_count};
+}
+
+/// Where the table begins that a property's index counts in. Materials are found by their file's numbers.
+int first_index_of(Property property, const SceneFile& entry, const Offsets& offsets) {
+    switch (owner_of(property)) {
+        case PropertyOwner::node: return entry.first_node;
+        case PropertyOwner::light: return offsets.light;
+        case PropertyOwner::camera: return offsets.camera;
+        case PropertyOwner::material: break;
+    }
+    return 0;
 }
 
 /// The file's nodes and clips once more, for one scene entry of the shot.
@@ -207,17 +244,24 @@ void append_tree(Scene& scene, const Scene& file, const Offsets& offsets, const 
     entry.node_count = static_cast<int>(file.nodes.size());
     entry.first_clip = static_cast<int>(scene.clips.size());
     entry.clip_count = static_cast<int>(file.clips.size());
+    entry.first_material = offsets.material;
+    entry.material_count = offsets.material_count;
     for (int& root : entry.roots) root += entry.first_node;
     for (Node node : file.nodes) {
         node.parent = shifted(node.parent, entry.first_node);
         for (int& child : node.children) child += entry.first_node;
-        for (MeshPrimitive& primitive : node.primitives) primitive = {primitive.geometry + offsets.geometry, primitive.material + offsets.material};
+        for (MeshPrimitive& primitive : node.primitives) {
+            primitive.geometry += offsets.geometry;
+            primitive.material += offsets.material;
+            for (VariantMaterial& variant : primitive.variants) variant.material += offsets.material;
+        }
         node.light = shifted(node.light, offsets.light);
         node.camera = shifted(node.camera, offsets.camera);
         scene.nodes.push_back(std::move(node));
     }
     for (Clip clip : file.clips) {
         for (NodeChannels& channels : clip.channels) channels.node += entry.first_node;
+        for (PropertyChannel& channel : clip.properties) channel.index += first_index_of(channel.property, entry, offsets);
         scene.clips.push_back(std::move(clip));
     }
     scene.files.push_back(std::move(entry));

@@ -108,6 +108,10 @@ const FormRow kFormRows[] = {
      [](const FieldSpec& field) {
          return Json{{"type", "array"}, {"items", section_schema(field.path)}};
      }},
+    {kNamedSections,
+     [](const FieldSpec& field) {
+         return Json{{"type", "object"}, {"additionalProperties", section_schema(field.path)}};
+     }},
     {kTexts, texts_schema},
     {kFrames, [](const FieldSpec&) { return frames_schema(); }},
     {kRational,

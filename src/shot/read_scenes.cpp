@@ -89,6 +89,7 @@ SceneSpec read_scene(const Section& shot, const Field& list, const YamlNode& nod
     read_gltf(section["gltf"], spec);
     read_transform(section, spec);
     read_animation(section, spec);
+    read_appearance(section, spec);
     return spec;
 }
 

@@ -68,6 +68,7 @@ constexpr FormRow kFormRows[] = {
     {kNode, [](const FieldSpec&) -> std::string { return "a node such as scene/Node"; }},
     {kKeys, [](const FieldSpec&) -> std::string { return "a map of times to values such as { 0 s: 1, 24 f: 2 }"; }},
     {kSections, [](const FieldSpec&) -> std::string { return "a list of maps"; }},
+    {kNamedSections, [](const FieldSpec&) -> std::string { return "a map of names to maps"; }},
 };
 
 }  // namespace

@@ -16,6 +16,8 @@ ReadTiming read_timing(const Section& shot);
 ImageSpec read_image(const Section& shot);
 Shutter read_shutter(const Section& shot);
 std::vector<SceneSpec> read_scenes(const Section& shot);
+/// `materials`, `variant` and `visible` of a scene entry.
+void read_appearance(const Section& scene, SceneSpec& spec);
 CameraSpec read_camera(const Section& shot);
 std::vector<LightSpec> read_lights(const Section& shot);
 /// @param has_lights  whether the shot has lights: the default depends on it

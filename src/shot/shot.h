@@ -22,6 +22,22 @@ struct NodeReference {
 /// Where a camera or a light looks: a (moving) point, or the origin of a node.
 using Target = std::variant<Track<glm::dvec3>, NodeReference>;
 
+/// Something that is on (1) or off (0) and only jumps between the two: keys of Interpolation::step.
+using SwitchTrack = Track<double>;
+inline bool is_on(const SwitchTrack& track, double time_s) { return evaluate(track, time_s) >= 0.5; }
+
+/// What a shot changes of a material of a scene's file. What is absent stays as the file, or a clip, has it.
+struct MaterialSpec {
+    std::string name;  ///< in the file; of several materials with one name all are meant
+    SourceLocation where;
+    std::optional<Track<glm::dvec3>> base_color;  ///< linear
+    std::optional<Track<glm::dvec3>> emissive;    ///< linear; times emissive_strength it is radiance
+    std::optional<Track<double>> metallic, roughness, emissive_strength;
+    std::optional<Track<double>> alpha;  ///< makes a material that the file calls opaque blend
+    std::optional<Track<double>> alpha_cutoff, normal_scale;
+    bool operator==(const MaterialSpec&) const = default;
+};
+
 struct SceneSpec {
     std::string id;
     std::filesystem::path gltf;  ///< absolute
@@ -33,6 +49,10 @@ struct SceneSpec {
     SourceLocation clip_where;
     double clip_start_s = 0;
     double clip_speed = 1;
+    SwitchTrack visible{1.0};  ///< of everything in the scene
+    std::optional<std::string> variant;  ///< of KHR_materials_variants
+    SourceLocation variant_where;
+    std::vector<MaterialSpec> materials;
     bool operator==(const SceneSpec&) const = default;
 };
 

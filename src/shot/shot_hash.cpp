@@ -53,6 +53,11 @@ private:
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
     void add(const SceneSpec& s) {
         (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed);
+        (*this)(s.visible, s.variant, s.materials);
+    }
+    void add(const MaterialSpec& m) {
+        (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.emissive_strength, m.alpha, m.alpha_cutoff,
+                m.normal_scale);
     }
     void add(const CameraSpec& c) {
         (*this)(c.gltf, c.position, c.look_at, c.up, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,

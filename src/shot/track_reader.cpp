@@ -146,6 +146,11 @@ std::optional<Track<T>> read_track(const Field& field, ReadValue<T> read_value) 
     return constant ? std::optional(Track<T>(*constant)) : std::nullopt;
 }
 
+std::optional<double> read_on_off(const Field& field) {
+    const auto on = read_boolean(field);
+    return on ? std::optional(*on ? 1.0 : 0.0) : std::nullopt;
+}
+
 std::optional<glm::dvec3> read_direction(const Field& field) {
     const auto direction = read_vector3(field);
     if (!direction || glm::length(*direction) > 0) return direction;
@@ -262,6 +267,17 @@ std::optional<Track<glm::dvec3>> read_direction_track(const Field& field) {
 }
 std::optional<Track<glm::dvec3>> read_scale_track(const Field& field) {
     return read_track<glm::dvec3>(field, read_scale);
+}
+
+std::optional<SwitchTrack> read_switch_track(const Field& field) {
+    auto track = read_track<double>(field, read_on_off);
+    const YamlNode* interpolate = field && field.node->is_map() ? field.node->find("interpolate") : nullptr;
+    if (interpolate && interpolate->text != "step")
+        field.with(*interpolate, field.name + ".interpolate")
+            .error(fmt::format("{}.interpolate is {}", field.name, shown_value(*interpolate)),
+                   "expected step: what is true or false only jumps; remove the key");
+    if (track) track->interpolation = Interpolation::step;
+    return track;
 }
 
 std::optional<RotationTrack> read_rotation_track(const Field& field) {

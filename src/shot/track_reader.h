@@ -16,6 +16,8 @@ std::optional<Track<glm::dvec3>> read_vector3_track(const Field& field);
 std::optional<Track<glm::dvec3>> read_direction_track(const Field& field);
 /// One factor or three at each key, none zero.
 std::optional<Track<glm::dvec3>> read_scale_track(const Field& field);
+/// true, false, or keys of them, which only jump.
+std::optional<SwitchTrack> read_switch_track(const Field& field);
 /// [x, y, z] degrees, a quaternion, `{ axis, angle }`, or a track of the first two.
 std::optional<RotationTrack> read_rotation_track(const Field& field);
 /// A point, a track of points, or a node.

@@ -74,6 +74,9 @@ const nlohmann::json* step_into(const nlohmann::json& schema, const std::string&
     if (schema.contains("items")) {
         if (const auto* found = step_into(schema["items"], key)) return found;
     }
+    if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object()) {
+        if (const auto* found = step_into(schema["additionalProperties"], key)) return found;
+    }
     if (!schema.contains("anyOf")) return nullptr;
     for (const auto& form : schema["anyOf"]) {
         if (const auto* found = step_into(form, key)) return found;

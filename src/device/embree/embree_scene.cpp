@@ -156,6 +156,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.camera = snapshot.camera;
     view_.camera.keys = camera_keys_.data();
     view_.camera.key_count = static_cast<int>(camera_keys_.size());
+    const bool same_emission = set_materials(snapshot);
     const bool same_geometry =
         have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
     if (!same_geometry) {
@@ -173,10 +174,26 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.motions = motions_.data();
     view_.matrices = matrices_.data();
     view_.keys = keys_.data();
-    if (!same_geometry) set_emitters(snapshot);
+    if (!same_geometry || !same_emission) set_emitters(snapshot);
     set_lights(snapshot);
     set_previous(snapshot);
     set_requirements();
+}
+
+/// Points the kernels to the snapshot's materials. How a material covers (its alpha mode, its sides) never changes within
+/// a shot, so structures stay. @return whether everything emits what it did before
+bool EmbreeScene::set_materials(const SceneSnapshot& snapshot) {
+    materials_ = snapshot.materials;
+    view_.materials = materials_.empty() ? scene_.materials.data() : materials_.data();
+    const std::size_t count = materials_.empty() ? scene_.materials.size() : materials_.size();
+    const auto equal = [](const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+    bool same = emissions_.size() == count;
+    emissions_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        same = same && equal(emissions_[i], view_.materials[i].emission);
+        emissions_[i] = view_.materials[i].emission;
+    }
+    return same;
 }
 
 void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
@@ -205,7 +222,8 @@ std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) c
     for (std::size_t i = 0; i < flattened.size(); ++i) {
         const SnapshotInstance& instance = snapshot.instances[i];
         const std::uint64_t triangles = scene_.geometries[instance.geometry].indices.size() / 3;
-        if (!instance.fixed ||
+        // What is hidden leaves the flat scene, which is then built anew; it costs rays nothing.
+        if (!instance.fixed || instance.mask == 0 ||
             (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles))
             continue;
         const glm::dmat3 linear(instance.world_from_geometry);
@@ -218,7 +236,7 @@ std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) c
 
 EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geometry, unsigned material) {
     EmbreeGeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
-    if (needs_filter(scene_.materials[material], cull_backfaces_)) {
+    if (needs_filter(view_.materials[material], cull_backfaces_)) {
         rtcSetGeometryIntersectFilterFunction(handle.get(), alpha_filter);
         rtcSetGeometryOccludedFilterFunction(handle.get(), alpha_filter);
     }
@@ -351,7 +369,7 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
     std::vector<double> cumulative{0.0};
     std::vector<std::pair<glm::dvec3, double>> places;
     for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
-        const kernels::Material& material = scene_.materials[snapshot.instances[i].material];
+        const kernels::Material& material = view_.materials[snapshot.instances[i].material];
         if (!emits(material) || snapshot.instances[i].mask == 0) continue;
         const int texture = material.emissive_texture.texture;
         if (!texture_means.count(texture))
@@ -428,7 +446,7 @@ void EmbreeScene::set_lights(const SceneSnapshot& snapshot) {
 void EmbreeScene::set_requirements() {
     requirements_ = 0;
     for (const kernels::Instance& instance : instances_)
-        if (has_maps(scene_.materials[instance.material]) || geometries_[instance.geometry].colors)
+        if (has_maps(view_.materials[instance.material]) || geometries_[instance.geometry].colors)
             requirements_ |= kernels::requirement::kMaps;
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
     const kernels::LightSet& lights = view_.lights;

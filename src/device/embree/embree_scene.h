@@ -50,6 +50,7 @@ private:
     void add_instance(const SceneSnapshot& snapshot, std::size_t index);
     RTCScene mesh_scene(unsigned geometry, unsigned material);
     EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
+    bool set_materials(const SceneSnapshot& snapshot);
     void set_lights(const SceneSnapshot& snapshot);
     void set_emitters(const SceneSnapshot& snapshot);
     void set_previous(const SceneSnapshot& snapshot);
@@ -62,6 +63,8 @@ private:
     // Tables that the view points into.
     std::vector<kernels::Geometry> geometries_;
     std::vector<kernels::Texture> textures_;
+    std::vector<kernels::Material> materials_;  ///< of the snapshot; empty: the scene's
+    std::vector<kernels::Vec3f> emissions_;     ///< [material] of the frame before
     std::vector<kernels::Instance> instances_;
     std::vector<kernels::InstanceMotion> motions_;
     std::vector<kernels::Affine> matrices_;

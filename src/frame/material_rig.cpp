@@ -1,0 +1,217 @@
+#include "frame/material_rig.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.h"
+#include "frame/problem.h"
+
+namespace kadr {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& names, const char* what) {
+    if (const auto nearest = nearest_name(word, names)) return fmt::format("did you mean '{}'?", *nearest);
+    if (names.empty()) return fmt::format("the file has no {}; remove the key", what);
+    return fmt::format("expected one of the file's {}: {}", what, fmt::join(names, ", "));
+}
+
+/// Names of the materials that an entry shows, each once.
+std::vector<std::string> material_names(const Scene& scene, const SceneFile& file) {
+    std::vector<std::string> names;
+    for (int m = file.first_material; m < file.first_material + file.material_count; ++m)
+        if (std::find(names.begin(), names.end(), scene.material_names[index(m)]) == names.end()) names.push_back(scene.material_names[index(m)]);
+    return names;
+}
+
+/// The factors that tracks replace, before they are multiplied.
+struct Factors {
+    kernels::Material material;
+    MaterialSource source;
+    void set(const DrivenProperty& driven, double time_s);
+    kernels::Material made() const;
+};
+
+float clamped(double value) { return static_cast<float>(std::clamp(value, 0.0, 1.0)); }
+
+void Factors::set(const DrivenProperty& driven, double time_s) {
+    TextureTransform& transform = source.transforms[static_cast<std::size_t>(driven.use)];
+    switch (driven.property) {
+        case Property::base_color: {
+            const glm::dvec3 color = driven.triple(time_s);
+            material.base_color = {clamped(color.x), clamped(color.y), clamped(color.z)};
+            return;
+        }
+        case Property::alpha: material.alpha = clamped(driven.number(time_s)); return;
+        case Property::metallic: material.metallic = clamped(driven.number(time_s)); return;
+        case Property::roughness: material.roughness = clamped(driven.number(time_s)); return;
+        case Property::emissive: source.emissive = driven.triple(time_s); return;
+        case Property::emissive_strength: source.emissive_strength = driven.number(time_s); return;
+        case Property::alpha_cutoff: material.alpha_cutoff = static_cast<float>(driven.number(time_s)); return;
+        case Property::normal_scale: material.normal_scale = static_cast<float>(driven.number(time_s)); return;
+        case Property::occlusion_strength: material.occlusion_strength = clamped(driven.number(time_s)); return;
+        case Property::texture_offset: transform.offset = driven.pair(time_s); return;
+        case Property::texture_rotation: transform.rotation_rad = driven.number(time_s); return;
+        case Property::texture_scale: transform.scale = driven.pair(time_s); return;
+        default: return;
+    }
+}
+
+kernels::Material Factors::made() const {
+    kernels::Material result = material;
+    const glm::dvec3 emission = glm::max(source.emissive * source.emissive_strength, glm::dvec3(0));
+    result.emission = {static_cast<float>(emission.x), static_cast<float>(emission.y), static_cast<float>(emission.z)};
+    kernels::TextureSlot* const slots[] = {&result.base_color_texture, &result.metallic_roughness_texture, &result.normal_texture,
+                                           &result.emissive_texture, &result.occlusion_texture};
+    for (std::size_t use = 0; use < std::size(slots); ++use) *slots[use] = transformed(*slots[use], source.transforms[use]);
+    return result;
+}
+
+template <class T>
+void drive(std::vector<DrivenProperty>& all, Property property, const std::optional<Track<T>>& track) {
+    if (!track) return;
+    DrivenProperty driven;
+    driven.property = property;
+    driven.track = &*track;
+    all.push_back(driven);
+}
+
+void drive_all(std::vector<DrivenProperty>& all, const MaterialSpec& spec) {
+    drive(all, Property::base_color, spec.base_color);
+    drive(all, Property::metallic, spec.metallic);
+    drive(all, Property::roughness, spec.roughness);
+    drive(all, Property::emissive, spec.emissive);
+    drive(all, Property::emissive_strength, spec.emissive_strength);
+    drive(all, Property::alpha, spec.alpha);
+    drive(all, Property::alpha_cutoff, spec.alpha_cutoff);
+    drive(all, Property::normal_scale, spec.normal_scale);
+}
+
+constexpr int kTimes = 5;  ///< even steps over an interval
+
+/// Whether five values of something that radiance is linear in have another mean than the one in the middle: Boole's rule.
+bool bends(const std::array<float, kTimes>& v) {
+    constexpr double kTolerance = 1e-3;  // of the value: a tenth of a step of 8-bit output, as for lights
+    const double mean = (7.0 * (v[0] + v[4]) + 32.0 * (v[1] + v[3]) + 12.0 * v[2]) / 90;
+    return std::abs(mean - v[2]) > kTolerance * *std::max_element(v.begin(), v.end());
+}
+
+bool ranges(const std::array<float, kTimes>& v, float limit) {
+    const auto [least, most] = std::minmax_element(v.begin(), v.end());
+    return *most - *least > limit;
+}
+
+}  // namespace
+
+void check_appearance(const Scene& scene, std::size_t entry, const SceneSpec& spec) {
+    const SceneFile& file = scene.files[entry];
+    std::vector<Diagnostic> problems;
+    if (spec.variant && std::find(file.variants.begin(), file.variants.end(), *spec.variant) == file.variants.end())
+        problems.push_back(problem_at(spec.variant_where, fmt::format("scene '{}' has no variant '{}'", spec.id, *spec.variant),
+                                      suggestion(*spec.variant, file.variants, "variants")));
+    const std::vector<std::string> names = material_names(scene, file);
+    for (const MaterialSpec& material : spec.materials)
+        if (std::find(names.begin(), names.end(), material.name) == names.end())
+            problems.push_back(problem_at(material.where, fmt::format("scene '{}' shows no material '{}'", spec.id, material.name),
+                                          suggestion(material.name, names, "materials")));
+    if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+MaterialRig::MaterialRig(const Shot& shot, const Scene& scene, const PropertyRig& properties) : scene_(&scene) {
+    for (std::size_t entry = 0; entry < scene.files.size(); ++entry) add_entry(shot, entry, properties);
+}
+
+void MaterialRig::add_entry(const Shot& shot, std::size_t entry, const PropertyRig& properties) {
+    const SceneFile& file = scene_->files[entry];
+    const SceneSpec& spec = shot.scenes.at(entry);
+    const auto variant = spec.variant ? std::find(file.variants.begin(), file.variants.end(), *spec.variant) : file.variants.end();
+    variant_.push_back(variant == file.variants.end() ? -1 : static_cast<int>(variant - file.variants.begin()));
+    for (int material = file.first_material; material < file.first_material + file.material_count; ++material) {
+        Own own;
+        own.original = material;
+        const int in_file = scene_->material_sources[index(material)].index;
+        if (in_file >= 0) own.driven = properties.of(static_cast<int>(entry), PropertyOwner::material, in_file);
+        for (const MaterialSpec& change : spec.materials) {
+            if (change.name != scene_->material_names[index(material)]) continue;
+            own.blends = change.alpha.has_value();
+            drive_all(own.driven, change);
+        }
+        if (own.driven.empty()) continue;
+        copy_of_[{static_cast<int>(entry), material}] = static_cast<int>(scene_->materials.size() + own_.size());
+        own_.push_back(std::move(own));
+    }
+}
+
+int MaterialRig::material_of(int entry, const MeshPrimitive& primitive) const {
+    int material = primitive.material;
+    for (const VariantMaterial& variant : primitive.variants)
+        if (variant.variant == variant_[index(entry)]) material = variant.material;
+    const auto copy = copy_of_.find({entry, material});
+    return copy == copy_of_.end() ? material : copy->second;
+}
+
+kernels::Material MaterialRig::evaluate(const Own& own, double time_s) const {
+    Factors factors{scene_->materials[index(own.original)], scene_->material_sources[index(own.original)]};
+    for (const DrivenProperty& driven : own.driven) factors.set(driven, time_s);
+    if (own.blends && factors.material.alpha_mode == kernels::AlphaMode::opaque) factors.material.alpha_mode = kernels::AlphaMode::blend;
+    return factors.made();
+}
+
+std::vector<kernels::Material> MaterialRig::table(double time_s) const {
+    std::vector<kernels::Material> all;
+    if (own_.empty()) return all;
+    all = scene_->materials;
+    for (const Own& own : own_) all.push_back(evaluate(own, time_s));
+    return all;
+}
+
+bool MaterialRig::may_emit(int material) const {
+    const std::size_t owned = index(material) - std::min(index(material), scene_->materials.size());
+    const bool own = index(material) >= scene_->materials.size();
+    const kernels::Material& original = scene_->materials[own ? index(own_[owned].original) : index(material)];
+    if (original.unlit || original.emission.x > 0 || original.emission.y > 0 || original.emission.z > 0) return true;
+    return own && std::any_of(own_[owned].driven.begin(), own_[owned].driven.end(), [](const DrivenProperty& driven) {
+        return driven.property == Property::emissive || driven.property == Property::emissive_strength;
+    });
+}
+
+bool MaterialRig::changes_fast(double begin_s, double end_s) const {
+    constexpr float kFactor = 1.0f / 8, kTexture = 1.0f / 256;
+    for (const Own& own : own_) {
+        std::array<kernels::Material, kTimes> at;
+        for (int i = 0; i < kTimes; ++i) at[index(i)] = evaluate(own, begin_s + (end_s - begin_s) * i / (kTimes - 1));
+        const auto of = [&at](auto value) {
+            std::array<float, kTimes> values;
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(at[i]);
+            return values;
+        };
+        using M = kernels::Material;
+        for (const auto channel : {&kernels::Vec3f::x, &kernels::Vec3f::y, &kernels::Vec3f::z})
+            if (ranges(of([channel](const M& m) { return m.base_color.*channel; }), kFactor) || bends(of([channel](const M& m) { return m.emission.*channel; }))) return true;
+        for (const auto factor : {&M::alpha, &M::metallic, &M::roughness, &M::alpha_cutoff, &M::normal_scale})
+            if (ranges(of([factor](const M& m) { return m.*factor; }), kFactor)) return true;
+        using S = kernels::TextureSlot;
+        for (const auto slot : {&M::base_color_texture, &M::metallic_roughness_texture, &M::normal_texture, &M::emissive_texture})
+            for (const auto entry : {&S::m00, &S::m01, &S::m02, &S::m10, &S::m11, &S::m12})
+                if ((at[0].*slot).texture >= 0 && ranges(of([slot, entry](const M& m) { return m.*slot.*entry; }), kTexture)) return true;
+    }
+    return false;
+}
+
+std::vector<double> MaterialRig::discontinuities(double begin_s, double end_s) const {
+    std::vector<double> times;
+    for (const Own& own : own_)
+        for (const DrivenProperty& driven : own.driven) {
+            const std::vector<double> more = driven.discontinuities(begin_s, end_s);
+            times.insert(times.end(), more.begin(), more.end());
+        }
+    return times;
+}
+
+}  // namespace kadr

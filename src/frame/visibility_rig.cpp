@@ -1,0 +1,76 @@
+#include "frame/visibility_rig.h"
+
+namespace kadr {
+
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+bool ever_off(const SwitchTrack& track) {
+    for (const Key<double>& key : track.keys)
+        if (key.value < 0.5) return true;
+    return false;
+}
+
+}  // namespace
+
+VisibilityRig::VisibilityRig(const Shot& shot, const Scene& scene, const PropertyRig& properties) {
+    switch_of_.assign(scene.nodes.size(), -1);
+    for (std::size_t entry = 0; entry < scene.files.size(); ++entry) {
+        const SceneFile& file = scene.files[entry];
+        const int above = entry_switch(shot.scenes.at(entry));
+        for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
+            if (scene.nodes[index(node)].parent < 0) add_tree(scene, properties, static_cast<int>(entry), node, above);
+    }
+}
+
+int VisibilityRig::entry_switch(const SceneSpec& spec) {
+    if (!ever_off(spec.visible)) return -1;
+    switches_.push_back({-1, true, {}, &spec.visible});
+    return static_cast<int>(switches_.size()) - 1;
+}
+
+void VisibilityRig::add_tree(const Scene& scene, const PropertyRig& properties, int entry, int root, int above) {
+    std::vector<std::pair<int, int>> open{{root, above}};
+    while (!open.empty()) {
+        auto [node, nearest] = open.back();
+        open.pop_back();
+        const std::vector<DrivenProperty>& driven = properties.of(entry, PropertyOwner::node, node);
+        if (!scene.nodes[index(node)].visible || !driven.empty()) {
+            switches_.push_back({nearest, scene.nodes[index(node)].visible, driven, nullptr});
+            nearest = static_cast<int>(switches_.size()) - 1;
+        }
+        switch_of_[index(node)] = nearest;
+        for (const int child : scene.nodes[index(node)].children) open.emplace_back(child, nearest);
+    }
+}
+
+bool VisibilityRig::Switch::on(double time_s) const {
+    if (by_shot) return is_on(*by_shot, time_s);
+    return by_clip.empty() ? rest : by_clip.back().number(time_s) >= 0.5;
+}
+
+VisibilityRig::States VisibilityRig::at(double time_s) const {
+    States states;
+    states.rig_ = this;
+    for (const Switch& one : switches_) states.on_.push_back(one.on(time_s) && (one.above < 0 || states.on_[index(one.above)]));
+    return states;
+}
+
+bool VisibilityRig::States::visible(int node) const {
+    if (on_.empty()) return true;
+    const int nearest = rig_->switch_of_[index(node)];
+    return nearest < 0 || on_[index(nearest)];
+}
+
+std::vector<double> VisibilityRig::discontinuities(double begin_s, double end_s) const {
+    std::vector<double> times;
+    const auto add = [&times](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
+    for (const Switch& one : switches_) {
+        if (one.by_shot) add(kadr::discontinuities(*one.by_shot, begin_s, end_s));
+        else if (!one.by_clip.empty()) add(one.by_clip.back().discontinuities(begin_s, end_s));
+    }
+    return times;
+}
+
+}  // namespace kadr

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "frame/property_rig.h"
+
+namespace kadr {
+
+/// What is hidden when: scene entries by the shot, nodes by their file (KHR_node_visibility), by its clips and by the
+/// shot. What is hidden hides all below it, lights included; cameras go on to see.
+class VisibilityRig {
+public:
+    VisibilityRig() = default;
+    VisibilityRig(const Shot& shot, const Scene& scene, const PropertyRig& properties);
+
+    /// Whether everything is always visible.
+    bool idle() const { return switches_.empty(); }
+
+    /// The states of all switches at one time.
+    class States {
+    public:
+        bool visible(int node) const;
+
+    private:
+        friend class VisibilityRig;
+        const VisibilityRig* rig_ = nullptr;
+        std::vector<bool> on_;  ///< [switch], with those above it
+    };
+    States at(double time_s) const;
+
+    std::vector<double> discontinuities(double begin_s, double end_s) const;
+
+private:
+    /// A node, or an entry's root, that is hidden at some time.
+    struct Switch {
+        int above = -1;  ///< into switches_; always before this one
+        bool rest = true;
+        std::vector<DrivenProperty> by_clip;
+        const SwitchTrack* by_shot = nullptr;  ///< wins over clips and file
+        bool on(double time_s) const;
+    };
+    int entry_switch(const SceneSpec& spec);
+    void add_tree(const Scene& scene, const PropertyRig& properties, int entry, int root, int above);
+
+    std::vector<Switch> switches_;
+    std::vector<int> switch_of_;  ///< [node] the nearest at or above it; -1: none
+};
+
+}  // namespace kadr

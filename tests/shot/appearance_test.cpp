@@ -1,0 +1,86 @@
+// materials, variant and visible of a scene entry.
+#include "shot/shot_fixture.h"
+#include "shot/shot_hash.h"
+
+namespace kadr {
+namespace {
+
+using Appearance = ShotTest;
+
+SceneSpec only_scene(const Shot& shot) { return shot.scenes.at(0); }
+
+TEST_F(Appearance, ReadsMaterialsByName) {
+    const SceneSpec scene = only_scene(parse_scene(
+        "{ gltf: a.glb, materials: { Paint: { base_color: { keys: { 0 s: [1, 0, 0], 2 s: [0, 0, 1] } }, roughness: 0.25 }, "
+        "\"Tail light\": { emissive: [1, 0.1, 0], emissive_strength: 20 nt, alpha: 0.5, alpha_cutoff: 0.75, metallic: 1, normal_scale: 2 } } }"));
+    ASSERT_EQ(scene.materials.size(), 2u);
+    const MaterialSpec &paint = scene.materials[0], &tail = scene.materials[1];
+    EXPECT_EQ(paint.name, "Paint");
+    EXPECT_EQ(evaluate(*paint.base_color, 1), glm::dvec3(0.5, 0, 0.5));
+    EXPECT_EQ(evaluate(*paint.roughness, 0), 0.25);
+    EXPECT_FALSE(paint.metallic || paint.emissive || paint.alpha);
+    EXPECT_EQ(tail.name, "Tail light");
+    EXPECT_EQ(evaluate(*tail.emissive, 0), glm::dvec3(1, 0.1, 0));
+    EXPECT_EQ(evaluate(*tail.emissive_strength, 0), 20);
+    EXPECT_EQ(evaluate(*tail.alpha, 0), 0.5);
+    EXPECT_EQ(evaluate(*tail.alpha_cutoff, 0), 0.75);
+    EXPECT_EQ(evaluate(*tail.metallic, 0), 1);
+    EXPECT_EQ(evaluate(*tail.normal_scale, 0), 2);
+}
+
+TEST_F(Appearance, SwitchesJump) {
+    const SceneSpec scene = only_scene(parse_scene("{ gltf: a.glb, visible: { keys: { 0 s: false, 1 s: true } } }"));
+    EXPECT_FALSE(is_on(scene.visible, 0.999));
+    EXPECT_TRUE(is_on(scene.visible, 1));
+    EXPECT_TRUE(is_on(only_scene(parse_scene("{ gltf: a.glb }")).visible, 0));
+    EXPECT_FALSE(is_on(only_scene(parse_scene("{ gltf: a.glb, visible: false }")).visible, 0));
+}
+
+TEST_F(Appearance, NamesAVariant) {
+    EXPECT_EQ(only_scene(parse_scene("{ gltf: a.glb, variant: Midnight }")).variant, "Midnight");
+    EXPECT_EQ(only_scene(parse_scene("{ gltf: a.glb, variant: null }")).variant, std::nullopt);
+}
+
+TEST_F(Appearance, Messages) {
+    const auto error_of = [](const std::string& scene) { return errors_of("kadr: 1\ncamera: {}\nscenes:\n- { gltf: a.glb, " + scene + " }\n"); };
+    EXPECT_EQ(error_of("visible: 1"), R"(shot.yaml:4:27: error: scenes.0.visible is 1
+    - { gltf: a.glb, visible: 1 }
+                              ^
+  expected true or false)");
+    EXPECT_EQ(error_of("visible: { keys: { 0 s: true }, interpolate: linear }"), R"(shot.yaml:4:63: error: scenes.0.visible.interpolate is 'linear'
+    - { gltf: a.glb, visible: { keys: { 0 s: true }, interpolate: linear } }
+                                                                  ^~~~~~
+  expected step: what is true or false only jumps; remove the key)");
+    EXPECT_EQ(error_of("materials: red"), R"(shot.yaml:4:29: error: scenes.0.materials is 'red'
+    - { gltf: a.glb, materials: red }
+                                ^~~
+  expected a map of names to maps; for example materials: { Paint: { base_color: [0.8, 0.1, 0.1] } })");
+    EXPECT_EQ(error_of("materials: { Paint: red }"), R"(shot.yaml:4:38: error: scenes.0.materials.Paint is 'red'
+    - { gltf: a.glb, materials: { Paint: red } }
+                                         ^~~
+  expected a map such as { base_color: [0.8, 0.1, 0.1], roughness: 0.3 })");
+    EXPECT_EQ(error_of("materials: { Paint: { color: red } }"), R"(shot.yaml:4:40: error: unknown key 'color' in scenes.0.materials.Paint
+    - { gltf: a.glb, materials: { Paint: { color: red } } }
+                                           ^~~~~
+  expected one of base_color, metallic, roughness, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale)");
+    EXPECT_EQ(error_of("materials: { Paint: { base_color: [1, 0, 2] } }"), R"(shot.yaml:4:59: error: scenes.0.materials.Paint.base_color[2] is 2
+    - { gltf: a.glb, materials: { Paint: { base_color: [1, 0, 2] } } }
+                                                              ^
+  expected [x, y, z], each 0 to 1)");
+}
+
+TEST_F(Appearance, BelongsToTheHash) {
+    const auto hash_of = [](const std::string& scene) {
+        Hasher hasher;
+        hash_shot(parse_scene("{ gltf: a.glb" + scene + " }"), hasher);
+        return hasher.finish().hex();
+    };
+    const std::string plain = hash_of("");
+    EXPECT_NE(hash_of(", visible: false"), plain);
+    EXPECT_NE(hash_of(", variant: Blue"), plain);
+    EXPECT_NE(hash_of(", materials: { Paint: { roughness: 0.5 } }"), plain);
+    EXPECT_NE(hash_of(", materials: { Paint: { roughness: 0.5 } }"), hash_of(", materials: { Paint: { metallic: 0.5 } }"));
+}
+
+}  // namespace
+}  // namespace kadr
