@@ -200,7 +200,7 @@ void Parser::add_preview() {
     app->add_option("--time", raw_.time, "time in seconds instead: 1.75s");
     app->add_option("--sheet", raw_.sheet, "COLUMNSxROWS frames on a contact sheet; --size is that of a tile");
     app->add_flag("--onion", raw_.onion, "frames overlaid: what moves, from early (warm) to late (cool)");
-    app->add_flag("--path", raw_.path, "the paths of camera, target and objects over a frame; long dashes: the shutter is open");
+    app->add_flag("--path", raw_.path, "the paths of camera, target and objects over a frame; thick: the shutter is open");
     app->add_option("--from", raw_.from, "where --path is seen from: camera, side, top or iso (default: camera)");
     app->add_option("--frames", raw_.frames, "frames of --sheet, --onion and --path: 0-95 or 0-40x5 (default: the shot's)");
     app->add_option("--output", invocation_.preview.output,

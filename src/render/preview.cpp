@@ -11,6 +11,8 @@
 #include "render/loaded_shot.h"
 #include "render/onion.h"
 #include "render/output_plan.h"
+#include "render/overview.h"
+#include "render/path_overlay.h"
 #include "render/preview_session.h"
 #include "render/sheet.h"
 
@@ -153,8 +155,82 @@ FrameReport preview_onion(const PreviewOptions& options, const RenderEvents& eve
     return report;
 }
 
-FrameReport preview_path(const PreviewOptions&, const RenderEvents&) {
-    throw InputError("--path is not built yet", "expected --sheet or --onion");
+/// The layer of metres along the view axis of a frame.
+std::vector<float> depth_of(const Image& image) {
+    const auto channel = std::find(image.channels.begin(), image.channels.end(), "depth.Z");
+    const std::size_t stride = image.channels.size();
+    std::vector<float> depth;
+    for (std::size_t at = static_cast<std::size_t>(channel - image.channels.begin()); at < image.pixels.size();
+         at += stride)
+        depth.push_back(image.pixels[at]);
+    return depth;
+}
+
+/// A picture of what moves, seen by the shot's camera or by a second one.
+class PathPreview {
+public:
+    PathPreview(const PreviewOptions& options, PreviewSession& session)
+        : options_(options),
+          session_(session),
+          time_(time_of(options, session)),
+          times_(path_times(session.bound(), frames_of(options, session))),
+          paths_(motion_paths(session.bound(), times_, time_.time_s())) {}
+
+    Image draw() {
+        if (options_.from == Viewpoint::camera) return draw_from(session_.bound());
+        const Shot second = overview_shot(session_.bound(), paths_, times_, options_.from, time_.time_s());
+        return draw_from(BoundShot(second, session_.loaded().scene()));
+    }
+    const FrameTime& time() const { return time_; }
+    std::string note() const;
+
+private:
+    Image draw_from(const BoundShot& shot);
+
+    const PreviewOptions& options_;
+    PreviewSession& session_;
+    const FrameTime time_;
+    const PathTimes times_;
+    const std::vector<MotionPath> paths_;
+    int left_out_ = 0;
+    bool nothing_shows_ = false;
+};
+
+Image PathPreview::draw_from(const BoundShot& shot) {
+    constexpr int kMostObjects = 6;  // and lights
+    FilmLayers layers;
+    layers.depth = true;
+    const RenderedFrame frame = session_.render(shot, time_, layers);
+    Image picture = session_.picture(frame);
+    const ScreenCamera camera(camera_at(shot, time_.time_s()), picture.width, picture.height);
+    std::vector<ScreenPath> seen;
+    for (const MotionPath& path : paths_) seen.push_back(project(path, times_, camera));
+    left_out_ = keep_most_prominent(seen, kMostObjects);
+    nothing_shows_ = seen.empty();
+    draw_paths(picture, seen, time_.number, depth_of(frame.image));
+    if (options_.from != Viewpoint::camera) draw_frustum(picture, camera, camera_at(session_.bound(), time_.time_s()));
+    return picture;
+}
+
+std::string PathPreview::note() const {
+    if (paths_.empty()) return "nothing moves during these frames";
+    if (nothing_shows_) return "nothing that moves is in the picture; try --from iso";
+    return left_out_ == 0 ? "" : fmt::format("{} more things move; those with the longest paths are drawn", left_out_);
+}
+
+constexpr const char* kViewpointNames[] = {"path", "path-side", "path-top", "path-iso"};
+
+FrameReport preview_path(const PreviewOptions& options, const RenderEvents& events) {
+    PreviewSession session(options.render, events, limit_width(options));
+    PathPreview path(options, session);
+    const int frame = path.time().number;
+    const char* name = kViewpointNames[static_cast<std::size_t>(options.from)];
+    const std::filesystem::path file =
+        file_of(options, fmt::format("{}.{:04}.{}.png", session.shot().name, frame, name), frame);
+    const Image picture = path.draw();
+    FrameReport report = deliver(session, file, picture, "path", {frame});
+    report.note = path.note();
+    return report;
 }
 
 using Preview = FrameReport (*)(const PreviewOptions&, const RenderEvents&);

@@ -65,6 +65,15 @@ class Preview(ProgramTest):
         self.assertEqual((lines[-1]["preview"], lines[-1]["frames"], lines[-1]["files"]), ("onion", [0, 1, 2], ["o.jpg"]))
         self.assertTrue((self.folder / "o.jpg").exists())
 
+    def test_path(self):
+        out = self.run_kadr("preview", self.shot, "--path", "--frame", "1").out
+        self.assertRegex(out, r"^path: ball\.0001\.path\.png in [\d.]+ s\n$")
+        self.run_kadr("preview", self.shot, "--path", "--from", "top", "--time", "0.04s", "--frames", "0-1")
+        self.assertEqual(self.frames("*.png"), ["ball.0001.path-top.png", "ball.0001.path.png"])
+        still = self.write_shot(name="still.yaml", more="").read_text().replace("1 s: 360 deg", "1 s: 0 deg")
+        (self.folder / "still.yaml").write_text(still)
+        self.assertIn("\n  nothing moves during these frames\n", self.run_kadr("preview", "still.yaml", "--path").out)
+
     def test_a_sheet_is_no_frame(self):
         self.run_kadr("preview", self.shot, "--sheet", "1x1", "--size", "48x32", "--output", "out/ball.0000.png")
         summary = json.loads(self.run_kadr("render", self.shot, "--frames", "0", "--json").out.splitlines()[-1])
