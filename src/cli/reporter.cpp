@@ -32,22 +32,31 @@ std::string frame_line(const FrameReport& report) {
     if (!report.preview.empty())
         return fmt::format("{} of {} frames: {} in {}", report.preview, report.frames.size(), file, readable_time(report.seconds));
     if (report.reused) return fmt::format("frame {}: reused {}", report.frame, file);
+    if (report.same_as) return fmt::format("frame {}: {} is the same as frame {}", report.frame, file, *report.same_as);
     return fmt::format("frame {}: {} in {}", report.frame, file, readable_time(report.seconds));
 }
 
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
     return fmt::format("  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
-                       "flattened triangles {}, motion error {:.3g} px",
+                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {:.3g} px",
                        device.rays, device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
-                       device.instances, device.moving_instances, device.flattened_triangles, report.motion_error_px);
+                       device.instances, device.moving_instances, device.flattened_triangles, device.structures.built,
+                       device.structures.updated, device.structures.kept, report.motion_error_px);
+}
+
+/// "3 reused", "3 reused, 40 the same as another".
+std::string shortcuts_text(const RenderSummary& summary) {
+    std::string text = fmt::format("{} reused", summary.reused);
+    if (summary.same > 0) text += fmt::format(", {} the same as another", summary.same);
+    return text;
 }
 
 std::string summary_text(const RenderSummary& summary) {
     const StageTimes& times = summary.times;
-    std::string text = fmt::format("{} frames ({} reused) in {}: load {:.2f} s, scene {:.2f} s, trace {:.2f} s, write {:.2f} s, "
+    std::string text = fmt::format("{} frames ({}) in {}: load {:.2f} s, scene {:.2f} s, trace {:.2f} s, write {:.2f} s, "
                                    "encode {:.2f} s\n",
-                                   summary.frames, summary.reused, readable_time(times.total), times.load, times.scene,
+                                   summary.frames, shortcuts_text(summary), readable_time(times.total), times.load, times.scene,
                                    times.trace, times.write, times.encode);
     text += fmt::format("{:.2f} million samples/s, peak memory {}\n", summary.samples_per_s / 1e6,
                         readable_bytes(summary.peak_memory_bytes));
@@ -69,7 +78,7 @@ public:
     void progress(int, double, int) override {}
     void frame_done(const FrameReport& report) override {
         print(stdout, frame_line(report) + "\n");
-        if (stats_ && !report.reused) print(stdout, stats_line(report) + "\n");
+        if (stats_ && !report.reused && !report.same_as) print(stdout, stats_line(report) + "\n");
     }
     void summary(const RenderSummary& summary) override { print(stdout, summary_text(summary)); }
 
@@ -144,7 +153,9 @@ Json statistics_json(const DeviceStatistics& device) {
             {"dropped_samples", device.dropped_samples}, {"load_s", device.load_s},
             {"set_frame_s", device.set_frame_s}, {"render_s", device.render_s},
             {"instances", device.instances}, {"moving_instances", device.moving_instances},
-            {"flattened_triangles", device.flattened_triangles}};
+            {"flattened_triangles", device.flattened_triangles},
+            {"structures",
+             {{"built", device.structures.built}, {"updated", device.structures.updated}, {"kept", device.structures.kept}}}};
 }
 
 Json frame_json(const FrameReport& report) {
@@ -153,14 +164,15 @@ Json frame_json(const FrameReport& report) {
     if (!report.preview.empty())
         return {{"event", "preview"}, {"preview", report.preview}, {"frames", report.frames}, {"note", report.note},
                 {"seconds", report.seconds}, {"samples", report.samples}, {"files", files}};
-    return {{"event", "frame"}, {"frame", report.frame}, {"reused", report.reused}, {"seconds", report.seconds},
+    return {{"event", "frame"}, {"frame", report.frame}, {"reused", report.reused},
+            {"same_as", report.same_as ? Json(*report.same_as) : Json()}, {"seconds", report.seconds},
             {"samples", report.samples}, {"dropped", report.dropped}, {"clamped", report.clamped},
             {"motion_error_px", report.motion_error_px}, {"files", files}};
 }
 
 Json summary_json(const RenderSummary& summary) {
     const StageTimes& times = summary.times;
-    return {{"event", "summary"}, {"frames", summary.frames}, {"reused", summary.reused},
+    return {{"event", "summary"}, {"frames", summary.frames}, {"reused", summary.reused}, {"same", summary.same},
             {"seconds", {{"load", times.load}, {"scene", times.scene}, {"trace", times.trace}, {"write", times.write},
                          {"encode", times.encode}, {"total", times.total}}},
             {"pixel_samples", summary.pixel_samples}, {"samples_per_s", summary.samples_per_s},

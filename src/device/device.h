@@ -23,11 +23,18 @@ struct Pass {
     std::function<void(double fraction)> progress;  ///< 0..1, called from any thread, rarely
 };
 
+/// What set_frame did to the acceleration structures: of meshes, of what is flattened, and of all instances together.
+struct StructureCounts {
+    std::uint64_t built = 0, updated = 0, kept = 0;
+    bool operator==(const StructureCounts&) const = default;
+};
+
 /// Counters since the last set_frame, but for the times of load.
 struct DeviceStatistics {
     std::uint64_t pixel_samples = 0, rays = 0, dropped_samples = 0;
     double load_s = 0, set_frame_s = 0, render_s = 0;
     std::uint64_t flattened_triangles = 0, instances = 0, moving_instances = 0;
+    StructureCounts structures;
 };
 
 /// A renderer on some hardware: three calls and no back-end type across them.

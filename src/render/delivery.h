@@ -19,7 +19,7 @@ namespace kadr {
 /// One frame on its way to its files and into the video.
 struct DeliveryItem {
     FrameReport report;              ///< `files` are those to be written, or that are there already when `reused`
-    std::optional<Image> image;      ///< linear; absent when the frame is reused
+    std::shared_ptr<const Image> image;  ///< linear; absent when the frame is reused
     ViewSpec view;                   ///< exposure filled in
     Metadata metadata;               ///< without "settings"
     FrameIdentity identity;

@@ -51,6 +51,9 @@ void add(DeviceStatistics& sum, const DeviceStatistics& part) {
     sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
     sum.instances = std::max(sum.instances, part.instances);
     sum.moving_instances = std::max(sum.moving_instances, part.moving_instances);
+    sum.structures.built += part.structures.built;
+    sum.structures.updated += part.structures.updated;
+    sum.structures.kept += part.structures.kept;
 }
 
 FilmLayers film_layers(const std::vector<Aov>& aovs) {
@@ -76,8 +79,16 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
                                     const std::function<void(double)>& progress) {
     stop_if_interrupted();
     const Stopwatch watch;
+    RenderedFrame frame = render(shot, make_snapshots(shot, time), layers, progress);
+    frame.seconds = watch.seconds();
+    return frame;
+}
+
+RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FilmLayers& layers,
+                                    const std::function<void(double)>& progress) {
+    stop_if_interrupted();
+    const Stopwatch watch;
     RenderedFrame frame;
-    const std::vector<SceneSnapshot> parts = make_snapshots(shot, time);
     const int total = shot.shot().render.samples;
     const std::vector<SampleRange> ranges = deal_samples(weights_of(parts), total);
     Film& film = cleared_film(shot.shot().image, layers, needs_weights(parts, ranges, total));

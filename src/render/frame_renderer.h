@@ -31,6 +31,9 @@ public:
     /// @throws Interrupted  when a signal asked to stop before the frame was complete
     RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
                          const std::function<void(double fraction)>& progress = {});
+    /// The same of a frame that is evaluated already. @param parts  make_snapshots of the frame
+    RenderedFrame render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FilmLayers& layers,
+                         const std::function<void(double fraction)>& progress = {});
 
 private:
     Film& cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted);

@@ -6,11 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "frame/snapshot_key.h"
 #include "output/encoder.h"
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/delivery.h"
 #include "render/environment_image.h"
+#include "render/frame_cache.h"
 #include "render/frame_identity.h"
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
@@ -20,6 +22,9 @@
 
 namespace kadr {
 namespace {
+
+/// Eight frames of 1920 x 1080 without layers. A frame that holds needs one, a short loop as many as it has.
+constexpr std::size_t kMostCachedBytes = std::size_t{256} << 20;
 
 void replace_name(std::string& pattern, const std::string& name) {
     static const std::string kPlaceholder = "{name}";
@@ -54,6 +59,7 @@ private:
     void open_output();
     void deliver(int frame, int frames_left);
     bool is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const;
+    FrameCache::Found find_or_render(const FrameTime& time, int frames_left);
     void render(DeliveryItem& item, const FrameTime& time, int frames_left);
     void load_device();
     ViewSpec view_with_exposure();
@@ -71,6 +77,7 @@ private:
     DeviceChoice device_;
     bool device_loaded_ = false;
     std::optional<FrameRenderer> renderer_;
+    FrameCache cache_{kMostCachedBytes};
     std::optional<double> exposure_;
     std::optional<Delivery> delivery_;
 };
@@ -137,23 +144,39 @@ ViewSpec RenderJob::view_with_exposure() {
     return view;
 }
 
-void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_left) {
-    load_device();
-    item.view = view_with_exposure();
-    const Shot& shot = loaded_->shot();
+/// A frame whose inputs are those of an earlier one over the whole shutter is that frame again, else it is rendered.
+FrameCache::Found RenderJob::find_or_render(const FrameTime& time, int frames_left) {
+    const Stopwatch watch;
+    const std::vector<SceneSnapshot> parts = make_snapshots(loaded_->bound(), time);
+    const Hash key = content_key(parts);
+    if (const auto same = cache_.find(key)) return *same;
     RenderedFrame frame =
-        renderer_->render(loaded_->bound(), time, film_layers(shot.output.aovs),
+        renderer_->render(loaded_->bound(), parts, film_layers(loaded_->shot().output.aovs),
                           [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); });
-    item.metadata = frame_metadata(shot, time, frame, summary_.device);
-    item.report.seconds = frame.seconds;
-    item.report.samples = frame.statistics.pixel_samples;
-    item.report.dropped = frame.statistics.dropped_samples;
-    item.report.motion_error_px = frame.motion_error_px;
-    item.report.device = frame.statistics;
-    item.image = std::move(frame.image);
+    frame.seconds = watch.seconds();
     summary_.pixel_samples += frame.statistics.pixel_samples;
     summary_.times.scene += frame.statistics.set_frame_s;
     summary_.times.trace += frame.statistics.render_s;
+    const auto kept = std::make_shared<const RenderedFrame>(std::move(frame));
+    cache_.keep(key, time.number, kept);
+    return {time.number, kept};
+}
+
+void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_left) {
+    load_device();
+    item.view = view_with_exposure();
+    const Stopwatch watch;
+    const auto [number, frame] = find_or_render(time, frames_left);
+    if (number != time.number) item.report.same_as = number;
+    item.metadata = frame_metadata(loaded_->shot(), time, *frame, summary_.device);
+    if (item.report.same_as) item.metadata["same_as"] = std::to_string(number);
+    item.report.seconds = watch.seconds();
+    item.report.samples = frame->statistics.pixel_samples;
+    item.report.dropped = frame->statistics.dropped_samples;
+    item.report.motion_error_px = frame->motion_error_px;
+    if (!item.report.same_as) item.report.device = frame->statistics;
+    item.image = std::shared_ptr<const Image>(frame, &frame->image);
+    summary_.same += item.report.same_as.has_value();
 }
 
 void RenderJob::deliver(int frame, int frames_left) {

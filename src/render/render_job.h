@@ -28,6 +28,7 @@ struct StageTimes { double load = 0, scene = 0, trace = 0, write = 0, encode = 0
 struct FrameReport {
     int frame = 0;
     bool reused = false;             ///< complete on disk, made from the same inputs
+    std::optional<int> same_as;      ///< number of the frame of this run whose pixels these are: nothing differs over the shutter
     double seconds = 0;
     std::uint64_t samples = 0, dropped = 0;
     std::uint64_t clamped = 0;       ///< half-float values above 65504
@@ -41,6 +42,7 @@ struct FrameReport {
 
 struct RenderSummary {
     int frames = 0, reused = 0;
+    int same = 0;                    ///< frames that repeat one rendered before in this run
     StageTimes times;
     std::uint64_t pixel_samples = 0;
     double samples_per_s = 0;

@@ -37,14 +37,15 @@ inline const char* triangle_gltf() {
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
 }
 
-/// Writes triangle.gltf and tiny.yaml, 12 x 8 pixels, 4 frames, into a folder. @return the shot file
+/// Writes triangle.gltf and tiny.yaml, 12 x 8 pixels, 4 frames that all differ (it grows lighter), into a folder.
+/// @return the shot file
 inline std::filesystem::path write_tiny_shot(const std::filesystem::path& folder, const std::string& output) {
     write_text(folder / "triangle.gltf", triangle_gltf());
     write_text(folder / "tiny.yaml",
                "kadr: 1\nname: tiny\ntiming: { fps: 24, frames: 0-3 }\nimage: { size: [12, 8] }\n"
                "scenes:\n  - { id: triangle, gltf: triangle.gltf }\n"
                "camera: { position: [0, 0, 4], look_at: [0, 0, 0] }\n"
-               "environment: { color: [1, 1, 1], strength: 1 }\n"
+               "environment: { color: [1, 1, 1], strength: { keys: { 0 f: 1, 100 f: 2 } } }\n"
                "render: { samples: 4 }\noutput:\n" + output);
     return folder / "tiny.yaml";
 }

@@ -93,6 +93,7 @@ public:
         statistics_.flattened_triangles = scene_->flat_triangles();
         statistics_.instances = scene_->instance_count();
         statistics_.moving_instances = scene_->moving_count();
+        statistics_.structures = scene_->structures();
     }
 
     void render(const Pass& pass, Film& film) override {

@@ -159,10 +159,13 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     const bool same_emission = set_materials(snapshot);
     const bool same_geometry =
         have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
+    structures_ = {};
+    structures_.kept = mesh_scenes_.size() + (same_geometry ? 2 : 0);
     if (!same_geometry) {
         const std::vector<bool> flattened = choose_flattened(snapshot);
-        if (!have_frame_ || flattened != flattened_ || snapshot.render_origin != flat_origin_)
-            build_flat(snapshot, flattened);
+        const bool same_flat = have_frame_ && flattened == flattened_ && snapshot.render_origin == flat_origin_;
+        if (!same_flat) build_flat(snapshot, flattened);
+        ++(same_flat ? structures_.kept : structures_.built);
         build_instances(snapshot, flattened);
         flattened_ = flattened;
         flat_origin_ = snapshot.render_origin;
@@ -283,6 +286,7 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
     EmbreeSceneHandle& handle = mesh_scenes_[{geometry_index, material}];
     if (handle) return handle.get();
     handle.reset(rtcNewScene(device_));
+    ++structures_.built;
     if (!packed_[geometry_index]) {
         packed_[geometry_index] = std::make_unique<PackedGeometry>(scene_.geometries[geometry_index]);
         geometries_[geometry_index] = packed_[geometry_index]->view(scene_.geometries[geometry_index]);
@@ -303,6 +307,7 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
 
 void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
     instanced_.reset(rtcNewScene(device_));
+    ++structures_.built;
     instance_count_ = moving_count_ = 0;
     matrices_.clear();
     keys_.clear();

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/device.h"
 #include "device/embree/embree_api.h"
 #include "film/film.h"
 #include "frame/snapshot.h"
@@ -39,6 +40,8 @@ public:
     std::uint64_t flat_triangles() const { return flat_triangles_; }
     std::uint64_t instance_count() const { return instance_count_; }
     std::uint64_t moving_count() const { return moving_count_; }
+    /// Structures built, changed and left alone by the last set_frame.
+    const StructureCounts& structures() const { return structures_; }
 
 private:
     struct PackedGeometry;  ///< vertices as the kernels fetch them, in mesh coordinates or flattened
@@ -93,6 +96,7 @@ private:
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0, emitter_key_ = 0;
     unsigned requirements_ = 0;
+    StructureCounts structures_;
     std::uint64_t flat_triangles_ = 0, instance_count_ = 0, moving_count_ = 0;
 };
 

@@ -1,0 +1,102 @@
+#include "frame/snapshot_key.h"
+
+#include <type_traits>
+
+namespace kadr {
+
+namespace {
+
+// Every struct is taken apart by a structured binding: a member that is added to one does not compile until somebody
+// decides whether it belongs into the key.
+class Feed {
+public:
+    explicit Feed(Hasher& hasher) : hasher_(hasher) {}
+
+    template <class... Values>
+    void operator()(const Values&... values) {
+        (add(values), ...);
+    }
+
+private:
+    template <class Number>
+    requires std::is_integral_v<Number> || std::is_enum_v<Number>
+    void add(Number value) { hasher_.add(static_cast<std::int64_t>(value)); }
+    template <class Number>
+    requires std::is_floating_point_v<Number>
+    void add(Number value) { hasher_.add(static_cast<double>(value)); }
+    void add(const std::string& text) { hasher_.add(text); }
+    void add(const glm::dvec3& v) { (*this)(v.x, v.y, v.z); }
+    void add(const kernels::Vec3f& v) { (*this)(v.x, v.y, v.z); }
+    void add(const std::vector<kernels::CameraKey>& keys) { bytes(keys); }
+    void add(const std::vector<glm::dmat4>& matrices) { bytes(matrices); }
+    void add(const LightKeys& light) { (*this)(light.first, light.count); }
+    void add(const kernels::CameraKey& key) { hasher_.add(std::string_view(reinterpret_cast<const char*>(&key), sizeof key)); }
+    void add(const kernels::Light& light) {
+        const auto& [radiance, kind, falloff, position, direction, axis_u, axis_v, cos_inner, cos_outer, inner, outer, range, radius, angular] = light;
+        (*this)(radiance, kind, falloff, position, direction, axis_u, axis_v, cos_inner, cos_outer, inner, outer, range, radius, angular);
+    }
+    void add(const kernels::TextureSlot& slot) {
+        const auto& [texture, uv_set, m00, m01, m02, m10, m11, m12] = slot;
+        (*this)(texture, uv_set, m00, m01, m02, m10, m11, m12);
+    }
+    void add(const kernels::Material& material) {
+        const auto& [base_color, metallic, emission, roughness, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit, color_map,
+                     roughness_map, normal_map, emissive_map, occlusion_map] = material;
+        (*this)(base_color, metallic, emission, roughness, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit, color_map,
+                roughness_map, normal_map, emissive_map, occlusion_map);
+    }
+    void add(const kernels::Camera& camera) {
+        [[maybe_unused]] const auto& [keys, count, orthographic, blades, near_clip, far_clip] = camera;
+        (*this)(count, orthographic, blades, near_clip, far_clip);
+    }
+    void add(const EnvironmentSnapshot& environment) {
+        const auto& [radiance, image, rotate_rad, visible] = environment;
+        (*this)(radiance, image ? image->string() : std::string(), rotate_rad, visible);
+    }
+    void add(const PreviousPlaces& previous) {
+        const auto& [places, camera] = previous;
+        (*this)(places, camera);
+    }
+    void add(const kernels::Settings& settings) {
+        const auto& [integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, transparent] = settings;
+        (*this)(integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, transparent);
+    }
+    void add(const kernels::Shutter& shutter) {
+        const auto& [plain, direction, weight, first_open, delay, length, passed] = shutter;
+        (*this)(plain, direction, weight, first_open, delay, length);
+        if (!plain) hasher_.add(std::string_view(reinterpret_cast<const char*>(passed), sizeof passed));
+    }
+    void add(const SceneSnapshot& part) {
+        // Instances and motion by geometry_key, which is made of them.
+        [[maybe_unused]] const auto& [frame, open_s, close_s, weight, shutter, origin, instances, motion, materials, camera_keys, camera, lights,
+                                      light_keys, environment, previous, settings, geometry_key] = part;
+        (*this)(weight, shutter, origin, materials, camera_keys, camera, lights, light_keys, environment, previous, settings, geometry_key);
+    }
+    template <class T>
+    void add(const std::optional<T>& value) {
+        add(value.has_value());
+        if (value) add(*value);
+    }
+    template <class T>
+    void add(const std::vector<T>& list) {
+        add(list.size());
+        for (const T& item : list) add(item);
+    }
+    template <class T>
+    void bytes(const std::vector<T>& values) {
+        hasher_.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+    }
+
+    Hasher& hasher_;
+};
+
+}  // namespace
+
+Hash content_key(const std::vector<SceneSnapshot>& parts) {
+    Hasher hasher;
+    Feed feed(hasher);
+    for (const SceneSnapshot& part : parts) feed(part);
+    return hasher.finish();
+}
+
+}  // namespace kadr
