@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
@@ -115,7 +116,7 @@ private:
 };
 
 EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment)
-    : device_(device), scene_(scene) {
+    : device_(device), scene_(scene), upper_(device) {
     geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
     packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
@@ -306,62 +307,70 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
 }
 
 void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
-    instanced_.reset(rtcNewScene(device_));
-    ++structures_.built;
-    instance_count_ = moving_count_ = 0;
-    matrices_.clear();
-    keys_.clear();
-    instances_.assign(snapshot.instances.size(), {});
-    motions_.assign(snapshot.instances.size(), {});
-    unsigned next_baked = static_cast<unsigned>(scene_.geometries.size());
-    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
+    std::vector<RTCScene> meshes(snapshot.instances.size());  // null: nothing to see, or flattened
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
         const SnapshotInstance& source = snapshot.instances[i];
-        instances_[i] = {source.geometry, source.material, source.id};
-        if (flattened[i]) {
-            if (!baked_[i]) continue;
-            instances_[i].geometry = next_baked++;
-            motions_[i] = {static_cast<unsigned>(matrices_.size()), 1, kernels::InstanceMotion::Kind::still, true};
-            matrices_.push_back({{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
-            continue;
-        }
-        add_instance(snapshot, i);
+        if (flattened[i] || source.mask == 0 || scene_.geometries[source.geometry].indices.empty()) continue;
+        meshes[i] = mesh_scene(source.geometry, source.material);
     }
-    rtcCommitScene(instanced_.get());
+    lay_out_motions(snapshot, flattened);
+    instance_count_ = moving_count_ = 0;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        instance_count_ += meshes[i] ? 1 : 0;
+        moving_count_ += meshes[i] && motions_[i].count > 1 ? 1 : 0;
+    }
+    upper_.resize(meshes.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, meshes.size(), 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) set_instance(snapshot, i, meshes[i]);
+    });
+    upper_.commit();
+    ++structures_.built;
     check(device_, "build the acceleration structure of the instances");
 }
 
-void EmbreeScene::add_instance(const SceneSnapshot& snapshot, std::size_t index) {
-    const SnapshotInstance& source = snapshot.instances[index];
-    kernels::InstanceMotion& motion = motions_[index];
-    const MotionKeys keys = motion_keys(snapshot.motion, index);
-    motion.identity = false;
-    motion.count = static_cast<unsigned>(keys.linear ? keys.matrices.size() : keys.keys.size());
-    if (keys.linear) {
-        motion.kind =
-            keys.matrices.size() == 1 ? kernels::InstanceMotion::Kind::still : kernels::InstanceMotion::Kind::linear;
-        motion.first = static_cast<unsigned>(matrices_.size());
-        matrices_.insert(matrices_.end(), keys.matrices.begin(), keys.matrices.end());
-    } else {
-        motion.kind = kernels::InstanceMotion::Kind::keys;
-        motion.first = static_cast<unsigned>(keys_.size());
-        keys_.insert(keys_.end(), keys.keys.begin(), keys.keys.end());
+/// Gives every instance its entries in the tables of matrices and keys.
+void EmbreeScene::lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
+    using Kind = kernels::InstanceMotion::Kind;
+    instances_.assign(snapshot.instances.size(), {});
+    motions_.assign(snapshot.instances.size(), {});
+    // The first matrix is that of everything flattened.
+    unsigned matrix_count = 1, key_count = 0, next_baked = static_cast<unsigned>(scene_.geometries.size());
+    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
+        const SnapshotInstance& source = snapshot.instances[i];
+        instances_[i] = {source.geometry, source.material, source.id};
+        motions_[i] = {0, 1, Kind::still, true};
+        if (flattened[i]) {
+            if (baked_[i]) instances_[i].geometry = next_baked++;
+            continue;
+        }
+        const unsigned count = snapshot.motion.headers[i].frame_count;
+        const bool linear = is_linear(snapshot.motion, i);
+        unsigned& next = linear ? matrix_count : key_count;
+        motions_[i] = {next, count, !linear ? Kind::keys : count == 1 ? Kind::still : Kind::linear, false};
+        next += count;
     }
-    if (source.mask == 0 || scene_.geometries[source.geometry].indices.empty()) return;
-    EmbreeGeometryHandle handle(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
-    rtcSetGeometryInstancedScene(handle.get(), mesh_scene(source.geometry, source.material));
-    rtcSetGeometryTimeStepCount(handle.get(), motion.count);
-    for (unsigned k = 0; k < motion.count; ++k) {
-        if (keys.linear) {
-            rtcSetGeometryTransform(handle.get(), k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, keys.matrices[k].m);
-        } else {
-            const RTCQuaternionDecomposition q = to_embree(keys.keys[k]);
-            rtcSetGeometryTransformQuaternion(handle.get(), k, &q);
+    matrices_.resize(matrix_count);
+    matrices_[0] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    keys_.resize(key_count);
+}
+
+/// Fills an instance's matrices or keys in and shows its mesh there. @param mesh  null: nothing to show
+void EmbreeScene::set_instance(const SceneSnapshot& snapshot, std::size_t index, RTCScene mesh) {
+    const kernels::InstanceMotion& motion = motions_[index];
+    if (!motion.identity) {
+        const unsigned first_frame = snapshot.motion.headers[index].first_frame;
+        for (unsigned k = 0; k < motion.count; ++k) {
+            if (motion.kind == kernels::InstanceMotion::Kind::keys)
+                keys_[motion.first + k] = key_at(snapshot.motion, first_frame + k);
+            else
+                matrices_[motion.first + k] = matrix_at(snapshot.motion, first_frame + k);
         }
     }
-    rtcCommitGeometry(handle.get());
-    rtcAttachGeometryByID(instanced_.get(), handle.get(), static_cast<unsigned>(index));
-    ++instance_count_;
-    moving_count_ += motion.count > 1 ? 1 : 0;
+    if (!mesh) return upper_.hide(index);
+    if (motion.kind == kernels::InstanceMotion::Kind::keys)
+        upper_.show(index, mesh, std::span(keys_).subspan(motion.first, motion.count));
+    else
+        upper_.show(index, mesh, std::span(matrices_).subspan(motion.first, motion.count));
 }
 
 void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {

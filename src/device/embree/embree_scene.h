@@ -8,6 +8,7 @@
 
 #include "device/device.h"
 #include "device/embree/embree_api.h"
+#include "device/embree/instance_level.h"
 #include "film/film.h"
 #include "frame/snapshot.h"
 #include "kernels/scene/scene_view.h"
@@ -35,7 +36,7 @@ public:
 
     const kernels::SceneView& view() const { return view_; }
     RTCScene flat() const { return flat_triangles_ > 0 ? flat_.get() : nullptr; }
-    RTCScene instanced() const { return instance_count_ > 0 ? instanced_.get() : nullptr; }
+    RTCScene instanced() const { return instance_count_ > 0 ? upper_.scene() : nullptr; }
     unsigned requirements() const { return requirements_; }
     std::uint64_t flat_triangles() const { return flat_triangles_; }
     std::uint64_t instance_count() const { return instance_count_; }
@@ -50,7 +51,8 @@ private:
     std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
     void build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
     void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
-    void add_instance(const SceneSnapshot& snapshot, std::size_t index);
+    void lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
+    void set_instance(const SceneSnapshot& snapshot, std::size_t index, RTCScene mesh);
     RTCScene mesh_scene(unsigned geometry, unsigned material);
     EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
     bool set_materials(const SceneSnapshot& snapshot);
@@ -90,7 +92,8 @@ private:
     std::vector<std::unique_ptr<GeometryUser>> users_;    ///< of mesh scenes
     std::vector<std::unique_ptr<GeometryUser>> flat_users_;
     std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_;  ///< by geometry and material
-    EmbreeSceneHandle flat_, instanced_;
+    EmbreeSceneHandle flat_;
+    InstanceLevel upper_;
     std::vector<bool> flattened_;  ///< of the frame before
     glm::dvec3 flat_origin_{0};
     bool have_frame_ = false;

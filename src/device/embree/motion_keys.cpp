@@ -47,19 +47,17 @@ kernels::Affine matrix_of(const kernels::FrameMatrix& frame) {
 
 }  // namespace
 
-MotionKeys motion_keys(const MotionFrames& motion, std::size_t instance) {
-    const kernels::TransformHeader header = motion.headers[instance];
-    const bool srt = motion.type == MotionFrames::Type::srt;
-    MotionKeys result;
-    result.linear = header.frame_count == 1 ||
-                    (header.frame_count == 2 && instance < motion.linear.size() && motion.linear[instance]);
-    for (unsigned k = header.first_frame; k < header.first_frame + header.frame_count; ++k) {
-        if (result.linear)
-            result.matrices.push_back(srt ? kernels::compose(key_of(motion.srt[k])) : matrix_of(motion.matrices[k]));
-        else
-            result.keys.push_back(srt ? key_of(motion.srt[k]) : key_of(motion.matrices[k]));
-    }
-    return result;
+bool is_linear(const MotionFrames& motion, std::size_t instance) {
+    const unsigned count = motion.headers[instance].frame_count;
+    return count == 1 || (count == 2 && instance < motion.linear.size() && motion.linear[instance]);
+}
+
+kernels::Affine matrix_at(const MotionFrames& motion, std::size_t frame) {
+    return motion.type == MotionFrames::Type::srt ? kernels::compose(key_of(motion.srt[frame])) : matrix_of(motion.matrices[frame]);
+}
+
+kernels::TransformKey key_at(const MotionFrames& motion, std::size_t frame) {
+    return motion.type == MotionFrames::Type::srt ? key_of(motion.srt[frame]) : key_of(motion.matrices[frame]);
 }
 
 RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key) {
