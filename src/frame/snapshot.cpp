@@ -238,6 +238,8 @@ private:
 
 }  // namespace
 
+std::vector<double> shot_discontinuities(const BoundShot& shot, double begin_s, double end_s) { return jumps_inside(shot, begin_s, end_s); }
+
 std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame) { return FrameSnapshots(shot, frame).make(); }
 
 }  // namespace kadr

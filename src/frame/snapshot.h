@@ -77,6 +77,9 @@ struct SceneSnapshot {
     std::uint64_t geometry_key = 0;            ///< equal keys: instances and motion are those of the previous frame
 };
 
+/// The times inside (begin, end), ascending, at which anything that a snapshot holds jumps: a shutter is split there.
+std::vector<double> shot_discontinuities(const BoundShot& shot, double begin_s, double end_s);
+
 /// The snapshots of one frame: one, or several where the shutter has to be split.
 /// @throws InputError  where the motion cannot be represented (a zero scale, half a turn between keys)
 std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame);

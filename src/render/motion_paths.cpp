@@ -8,6 +8,7 @@
 
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
+#include "frame/snapshot.h"
 
 namespace kadr {
 namespace {
@@ -156,15 +157,12 @@ PathTimes path_times(const BoundShot& shot, const std::vector<int>& frames) {
         times.samples_s.push_back(std::lerp(begin_s, end_s, static_cast<double>(i) / steps));
     for (const FrameTime& frame : times.frames)
         times.samples_s.insert(times.samples_s.end(), {frame.open_s, frame.time_s(), frame.close_s});
-    times.jumps_s = shot.bindings().rig.discontinuities(begin_s, end_s);
-    const std::vector<double> camera = camera_discontinuities(shot, begin_s, end_s);
-    times.jumps_s.insert(times.jumps_s.end(), camera.begin(), camera.end());
+    times.jumps_s = shot_discontinuities(shot, begin_s, end_s);
     // Both sides of a jump, so that the path reaches up to it.
     const double inset = 1e-7 * (end_s - begin_s);
     for (const double jump : times.jumps_s) times.samples_s.insert(times.samples_s.end(), {jump - inset, jump + inset});
     std::erase_if(times.samples_s, [&](double time) { return time < begin_s || time > end_s; });
     sort_unique(times.samples_s);
-    sort_unique(times.jumps_s);
     return times;
 }
 

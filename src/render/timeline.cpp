@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "frame/bindings.h"
+#include "frame/snapshot.h"
+#include "frame/snapshot_key.h"
 #include "render/track_list.h"
 
 namespace kadr {
@@ -38,6 +40,22 @@ std::string fitted(const std::string& name) {
     return name.substr(0, kHead) + ".." + name.substr(name.size() - kTail);
 }
 
+/// "open for 0.020833 s, 180 deg of a frame" and what is special about it.
+std::string shutter_text(const Shutter& shutter, const Rational& fps) {
+    constexpr const char* kShapes[] = {"box", "triangle", "smooth", "keys"};
+    constexpr const char* kDirections[] = {"none", "down", "up", "left", "right"};
+    const double open_s = open_length_s(shutter, fps);
+    if (!(open_s > 0)) return "  shutter: closed, no motion blur\n";
+    std::string text = fmt::format("  shutter: open for {} s, {} deg of a frame", decimal(open_s),
+                                   decimal(360 * open_s * fps.value(), 3));
+    if (shutter.curve.shape != ShutterCurve::Shape::box)
+        text += fmt::format(", curve {}", kShapes[static_cast<int>(shutter.curve.shape)]);
+    if (shutter.rolling.direction != RollingShutter::Direction::none)
+        text += fmt::format(", rolling {} over {} s", kDirections[static_cast<int>(shutter.rolling.direction)],
+                            decimal(shutter.rolling.duration_s));
+    return text + (shutter.physical ? ", physical exposure\n" : "\n");
+}
+
 /// The text of one shot's timeline, section by section.
 class Timeline {
 public:
@@ -47,7 +65,7 @@ public:
         end_s_ = std::max(last.close_s, last.time_s());
         if (!(end_s_ > begin_s_)) end_s_ = begin_s_ + 1 / fps();
     }
-    std::string text() const { return timing() + table() + bars() + cuts(); }
+    std::string text() const { return timing() + table() + bars() + cuts() + repeats(); }
 
 private:
     const std::vector<int>& frames() const { return shot_.timing().frames; }
@@ -72,6 +90,7 @@ private:
     std::vector<Cut> all_cuts() const;
     std::string cuts() const;
     std::string split_frames(double time_s) const;
+    std::string repeats() const;
 
     const BoundShot& shot_;
     const std::vector<TrackInfo> tracks_;
@@ -87,17 +106,13 @@ std::string Timeline::shutter_line(int number) const {
 std::string Timeline::timing() const {
     const Timing& timing = shot_.timing();
     const Rational& fps = timing.fps;
-    const FrameTime first = frame(frames().front());
     const std::string rate = fps.denominator == 1
                                  ? decimal(fps.value())
                                  : fmt::format("{}/{} ({})", fps.numerator, fps.denominator, decimal(fps.value()));
     std::string text =
         fmt::format("timing: {} frame{} from {} to {}, {} a second, frame {} is at 0 s\n", frames().size(),
                     frames().size() == 1 ? "" : "s", frames().front(), frames().back(), rate, timing.first);
-    const double open_s = first.close_s - first.open_s;
-    text += open_s > 0 ? fmt::format("  shutter: open for {} s, {} deg of a frame\n", decimal(open_s),
-                                     decimal(360 * open_s * this->fps()))
-                       : std::string("  shutter: closed, no motion blur\n");
+    text += shutter_text(shot_.shot().shutter, fps);
     text += shutter_line(frames().front());
     if (frames().size() > 1) text += shutter_line(frames().back());
     return text;
@@ -165,8 +180,8 @@ std::vector<Timeline::Cut> Timeline::all_cuts() const {
         for (const double time : times) cuts.push_back({time, name});
     };
     for (const TrackInfo& track : tracks_) add(track.name, track.jumps(begin_s_, end_s_));
-    // The rig knows the jumps of the scenes' own tracks, too; those have their names already.
-    add(kClips, shot_.bindings().rig.discontinuities(begin_s_, end_s_));
+    // All there are; those of the tracks have their names already, the others come out of the scenes' files.
+    add(kClips, shot_discontinuities(shot_, begin_s_, end_s_));
     std::stable_sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) { return a.time_s < b.time_s; });
     return cuts;
 }
@@ -188,6 +203,36 @@ std::string Timeline::cuts() const {
                             fitted(merged[i].name), split_frames(merged[i].time_s));
     if (merged.size() > kMostCuts) text += fmt::format("  and {} more\n", merged.size() - kMostCuts);
     return text;
+}
+
+/// "3-8, 12".
+std::string as_ranges(const std::vector<int>& frames) {
+    std::string text;
+    for (std::size_t i = 0; i < frames.size();) {
+        std::size_t last = i;
+        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+        text += (text.empty() ? "" : ", ") + std::to_string(frames[i]);
+        if (last > i) text += fmt::format("-{}", frames[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+std::string Timeline::repeats() const {
+    constexpr std::size_t kMostCompared = 500;
+    if (frames().size() < 2) return {};
+    if (frames().size() > kMostCompared) return fmt::format("static: not looked at beyond {} frames\n", kMostCompared);
+    std::vector<int> same;
+    Hash before = content_key(make_snapshots(shot_, frame(frames().front())));
+    for (std::size_t i = 1; i < frames().size(); ++i) {
+        const Hash key = content_key(make_snapshots(shot_, frame(frames()[i])));
+        if (key == std::exchange(before, key)) same.push_back(frames()[i]);
+    }
+    if (same.empty()) return "static: no frame repeats the one before\n";
+    constexpr std::size_t kColumns = 40;
+    std::string list = as_ranges(same);
+    if (list.size() > kColumns) list = list.substr(0, list.rfind(',', kColumns)) + ", ..";
+    return fmt::format("static: {} of {} frames repeat the one before: {}\n", same.size(), frames().size(), list);
 }
 
 }  // namespace

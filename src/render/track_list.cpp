@@ -57,6 +57,25 @@ private:
     std::vector<TrackInfo> tracks_;
 };
 
+void add_material(TrackList& list, const std::string& scene, const MaterialSpec& material) {
+    const std::string name = scene + ".materials." + material.name;
+    list.add(name + ".base_color", material.base_color);
+    list.add(name + ".alpha", material.alpha);
+    list.add(name + ".alpha_cutoff", material.alpha_cutoff);
+    list.add(name + ".metallic", material.metallic);
+    list.add(name + ".roughness", material.roughness);
+    list.add(name + ".emissive", material.emissive);
+    list.add(name + ".emissive_strength", material.emissive_strength);
+    list.add(name + ".normal_scale", material.normal_scale);
+}
+
+void add_scene(TrackList& list, const SceneSpec& scene) {
+    const std::string name = "scenes." + scene.id;
+    list.add(name + ".transform", scene.transform);
+    list.add(name + ".visible", scene.visible);
+    for (const MaterialSpec& material : scene.materials) add_material(list, name, material);
+}
+
 void add_camera(TrackList& list, const CameraSpec& camera) {
     if (!camera.gltf) {
         list.add("camera.position", camera.position);
@@ -97,7 +116,7 @@ void add_light(TrackList& list, const LightSpec& light) {
 
 std::vector<TrackInfo> tracks_of(const Shot& shot) {
     TrackList list;
-    for (const SceneSpec& scene : shot.scenes) list.add("scenes." + scene.id + ".transform", scene.transform);
+    for (const SceneSpec& scene : shot.scenes) add_scene(list, scene);
     add_camera(list, shot.camera);
     for (const LightSpec& light : shot.lights) add_light(list, light);
     list.add("environment.color", shot.environment.color);

@@ -24,6 +24,7 @@ struct CutStage : Stage {
         shot.shutter = {0, 0.5};
         shot.camera.position = track<glm::dvec3>({{0, {0, 0, 5}}, {0.5625, {1, 0, 5}}}, Interpolation::step);
         shot.scenes[0].transform.rotate.axis_angle = {{0, 1, 0}, track<double>({{0.25, 0}, {0.75, 3}})};
+        add_node("Wheel");
         shot.scenes[0].transform.rotate.axis_angle->angle_rad.keys[0].ease = Ease{0.4, 0, 0.6, 1};
     }
 };
@@ -44,7 +45,19 @@ bars: | a key, ! a jump, = changes, . holds, < > keys outside the shot
   camera.position                      |.............................!.............................
 cuts: 1
   0.5625 s (f 2.25): camera.position: splits the shutter of frame 2
+static: 1 of 5 frames repeat the one before: 4
 )");
+}
+
+TEST(TimelineTest, SaysWhatIsSpecialAboutTheShutter) {
+    CutStage stage;
+    stage.shot.shutter.curve.shape = ShutterCurve::Shape::triangle;
+    stage.shot.shutter.rolling = {RollingShutter::Direction::down, 0.02};
+    stage.shot.shutter.physical = true;
+    EXPECT_THAT(
+        timeline_text(stage.bind()),
+        HasSubstr("\n  shutter: open for 0.125 s, 180 deg of a frame, curve triangle, rolling down over 0.02 s, "
+                  "physical exposure\n  frame 0: at 0 s, shutter 0 s to 0.145 s\n"));
 }
 
 TEST(TimelineTest, SaysThatNothingMoves) {
@@ -70,6 +83,15 @@ TEST(TimelineTest, TellsACutBetweenShuttersAndOneOfAClip) {
     const std::string text = timeline_text(stage.bind());
     EXPECT_THAT(text, HasSubstr("cuts: 2\n  0.3 s (f 1.2): clips: splits the shutter of frame 1\n"
                                 "  0.7 s (f 2.8): camera.position: while the shutter is closed\n"));
+}
+
+TEST(TimelineTest, ListsStaticFramesAsRanges) {
+    CutStage stage;
+    stage.shot.camera.position = glm::dvec3(0, 0, 5);
+    stage.shot.timing.frames = {0, 1, 3, 4, 5, 6, 9, 10};
+    EXPECT_THAT(timeline_text(stage.bind()), HasSubstr("static: 5 of 8 frames repeat the one before: 4-6, 9-10\n"));
+    stage.shot.timing.frames = {0, 1};
+    EXPECT_THAT(timeline_text(stage.bind()), HasSubstr("static: no frame repeats the one before\n"));
 }
 
 TEST(TimelineTest, MarksKeysOutsideTheShot) {
@@ -99,14 +121,21 @@ TEST(TrackListTest, ListsEveryValueThatHasKeys) {
     light.look_at = vector;
     light.size_m = track<glm::dvec2>({{0, {1, 1}}, {1, {1, 2}}});
     stage.shot.lights.push_back(light);
+    stage.shot.scenes[0].visible = number;
+    stage.shot.scenes[0].materials.resize(1);
+    stage.shot.scenes[0].materials[0].name = "Paint";
+    stage.shot.scenes[0].materials[0].base_color = vector;
+    stage.shot.scenes[0].materials[0].roughness = number;
     stage.shot.camera.up = vector;
     stage.shot.camera.focus = number;
     stage.shot.camera.focal_length_mm = number;
     stage.shot.environment.rotate_rad = number;
     std::vector<std::string> names;
     for (const TrackInfo& info : tracks_of(stage.shot)) names.push_back(info.name);
-    EXPECT_THAT(names, ElementsAre("camera.up", "camera.focal_length", "camera.focus", "lights.key.luminance",
-                                   "lights.key.look_at", "lights.key.size", "environment.rotate"));
+    EXPECT_THAT(
+        names, ElementsAre("scenes.stage.visible", "scenes.stage.materials.Paint.base_color",
+                           "scenes.stage.materials.Paint.roughness", "camera.up", "camera.focal_length", "camera.focus",
+                           "lights.key.luminance", "lights.key.look_at", "lights.key.size", "environment.rotate"));
 }
 
 }  // namespace
