@@ -13,7 +13,7 @@
 namespace kadr {
 namespace {
 
-constexpr int kMostSteps = 8;           // from frame to frame
+constexpr int kMostSteps = 24;          // from frame to frame: 15 degrees each of a whole turn
 constexpr std::size_t kSamples = 4000;  // of a path, roughly
 
 void sort_unique(std::vector<double>& times) {
@@ -74,16 +74,12 @@ std::map<Mover, Box> moving_boxes(const BoundShot& shot, double now_s) {
     return boxes;
 }
 
-double length_of(const MotionPath& path, const std::vector<FrameTime>& frames) {
-    double length = 0;
-    glm::dvec3 last = path.position(frames.front().open_s);
+/// How far apart the ends of a path lie: the diagonal of its box.
+double extent_of(const MotionPath& path, const std::vector<FrameTime>& frames) {
+    Box box;
     for (const FrameTime& frame : frames)
-        for (const double time : {frame.time_s(), frame.close_s}) {
-            const glm::dvec3 next = path.position(time);
-            length += glm::distance(last, next);
-            last = next;
-        }
-    return length;
+        for (const double time : {frame.open_s, frame.time_s(), frame.close_s}) box.add(path.position(time));
+    return 2 * box.radius();
 }
 
 std::string name_of(const BoundShot& shot, const Mover& mover) {
@@ -101,14 +97,14 @@ MotionPath follow(const BoundShot& shot, const Mover& mover, const Box& box, con
 
 MotionPath object_path(const BoundShot& shot, const Mover& mover, const Box& box, const PathTimes& times) {
     MotionPath best = follow(shot, mover, box, box.centre());
-    constexpr double kStandsStill = 0.05;  // of the object's size
-    double farthest = length_of(best, times.frames);
-    if (farthest > kStandsStill * box.radius()) return best;
+    // Where the corners go so much farther than the middle, it is the turning that one wants to see.
+    constexpr double kFarther = 3;
+    double farthest = kFarther * extent_of(best, times.frames);
     for (int i = 0; i < 8; ++i) {
         MotionPath corner = follow(shot, mover, box, box.corner(i));
-        const double length = length_of(corner, times.frames);
-        if (!(length > farthest)) continue;
-        farthest = length;
+        const double extent = extent_of(corner, times.frames);
+        if (!(extent > farthest)) continue;
+        farthest = extent;
         best = std::move(corner);
         best.name += " (a corner)";
     }
@@ -171,7 +167,7 @@ std::vector<MotionPath> motion_paths(const BoundShot& shot, const PathTimes& tim
     add_camera(shot, paths);
     add_lights(shot, paths);
     for (const auto& [mover, box] : moving_boxes(shot, now_s)) paths.push_back(object_path(shot, mover, box, times));
-    std::erase_if(paths, [&](const MotionPath& path) { return !(length_of(path, times.frames) > 1e-9); });
+    std::erase_if(paths, [&](const MotionPath& path) { return !(extent_of(path, times.frames) > 1e-9); });
     return paths;
 }
 

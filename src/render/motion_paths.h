@@ -27,9 +27,9 @@ struct PathTimes {
 /// @param frames  ascending, at least one
 PathTimes path_times(const BoundShot& shot, const std::vector<int>& frames);
 
-/// What moves during those times: the camera, its target, lights, then objects, each a scene or a node whose parents stand
-/// still. An object is followed by the middle of its bounding box at `now_s`, carried along with it; where it only
-/// turns about its middle, by the corner of the box that goes farthest ("(a corner)" in its name). The shot has to
+/// What moves during those times: the camera, its target, lights, then objects, each a scene or a node whose parents
+/// stand still. An object is followed by the middle of its bounding box at `now_s`, carried along with it; where it
+/// only turns about its middle, by the corner of the box that goes farthest ("(a corner)" in its name). The shot has to
 /// outlive the result.
 std::vector<MotionPath> motion_paths(const BoundShot& shot, const PathTimes& times, double now_s);
 

@@ -144,6 +144,16 @@ TEST(PathTest, WhatTurnsIsFollowedByACorner) {
     EXPECT_NEAR(glm::length(glm::dvec2(path.position(2.7))), std::sqrt(2.0), 1e-9);
 }
 
+TEST(PathTest, AMiddleThatIsNotQuiteTheAxisIsNoReasonToFollowIt) {
+    PathStage stage;
+    const int node = stage.add_node("Propeller");
+    stage.scene.geometries[0].centre = {0.2, 0, 0};  // uneven blades: the middle of their box goes round the axis
+    stage.animate(node).rotation = track<glm::dquat>({{0, test::turn(0)}, {4, test::turn(170)}});
+    EXPECT_EQ(stage.seen()[0].name, "stage/Propeller (a corner)");
+    stage.scene.geometries[0].centre = {3, 0, 0};  // swings on a long arm
+    EXPECT_EQ(stage.seen()[0].name, "stage/Propeller");
+}
+
 TEST(PathTest, WhatHangsTogetherIsOneObject) {
     PathStage stage;
     const int root = stage.add_mover();
