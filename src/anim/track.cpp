@@ -3,167 +3,163 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <type_traits>
 
-#include <glm/gtc/matrix_transform.hpp>
+#include <fmt/format.h>
+
+#include "anim/segments.h"
+#include "base/error.h"
+#include "base/text.h"
 
 namespace kadr {
 
 namespace {
 
 template <class T>
-constexpr bool kIsRotation = std::is_same_v<T, glm::dquat>;
-
-// ---- Easing (CSS Easing Functions Level 1) ----
-
-double bezier(double p1, double p2, double u) {
-    const double v = 1 - u;
-    return ((3 * v * p1) * v + 3 * u * v * p2 + u * u) * u;
+KeyedSpan span_of(const Track<T>& track) {
+    return {track.keys.front().time_s, track.keys.back().time_s, track.before, track.after};
 }
 
-double bezier_slope(double p1, double p2, double u) {
-    const double v = 1 - u;
-    return 3 * v * v * p1 + 6 * u * v * (p2 - p1) + 3 * u * u * (1 - p2);
-}
-
-/// The curve's parameter where its x is given: Newton where the slope allows, inside a bracket that bisection shrinks.
-double parameter_at(const Ease& ease, double x) {
-    double low = 0, high = 1, u = x;
-    for (int step = 0; step < 64; ++step) {
-        const double error = bezier(ease[0], ease[2], u) - x;
-        if (std::abs(error) < 1e-15) break;
-        (error > 0 ? high : low) = u;
-        const double slope = bezier_slope(ease[0], ease[2], u);
-        const double newton = slope > 1e-9 ? u - error / slope : low - 1;
-        u = newton > low && newton < high ? newton : 0.5 * (low + high);
-    }
-    return u;
-}
-
-double eased(const std::optional<Ease>& ease, double u) {
-    if (!ease || u <= 0 || u >= 1) return u;
-    return bezier((*ease)[1], (*ease)[3], parameter_at(*ease, u));
-}
-
-// ---- Rotations ----
-
-/// Slerp without a change of sign; the angle by atan2, which stays exact for tiny and for wide arcs.
-glm::dquat arc(const glm::dquat& a, const glm::dquat& b, double u) {
-    const glm::dquat difference = a - b, sum = a + b;
-    const double angle = 2 * std::atan2(glm::length(difference), glm::length(sum));
-    const double sine = std::sin(angle);
-    if (angle < 1e-9 || sine < 1e-12) return glm::normalize(a * (1 - u) + b * u);
-    return a * (std::sin((1 - u) * angle) / sine) + b * (std::sin(u * angle) / sine);
-}
-
-/// Of b and -b, which are one rotation, the one nearer to a.
-glm::dquat nearer(const glm::dquat& a, const glm::dquat& b) { return glm::dot(a, b) < 0 ? -b : b; }
-
-/// Half the rotation vector of a unit quaternion.
-glm::dvec3 log_of(const glm::dquat& q) {
-    const glm::dvec3 v(q.x, q.y, q.z);
-    const double sine = glm::length(v);
-    return sine < 1e-15 ? v : v * (std::atan2(sine, q.w) / sine);
-}
-
-glm::dquat exp_of(const glm::dvec3& half) {
-    const double angle = glm::length(half);
-    const glm::dvec3 v = half * (angle < 1e-15 ? 1.0 : std::sin(angle) / angle);
-    return {std::cos(angle), v.x, v.y, v.z};
-}
-
-/// log(from^-1 * to) by the shorter arc.
-glm::dvec3 step_between(const glm::dquat& from, const glm::dquat& to) {
-    return log_of(glm::conjugate(from) * nearer(from, to));
-}
-
-glm::dquat unit(const glm::dquat& q) { return glm::normalize(q); }
-
-// ---- Segments: value at u in [0, 1] between key i and key i + 1 ----
-
+/// The segment that a time of the keyed span falls in; at a key the one that follows in the direction of travel.
 template <class T>
-double seconds_between(const Track<T>& track, std::size_t from, std::size_t to) {
-    return track.keys[to].time_s - track.keys[from].time_s;
+std::size_t segment_at(const Track<T>& track, double time_s, bool mirrored) {
+    const auto& keys = track.keys;
+    const auto after = mirrored ? std::lower_bound(keys.begin(), keys.end(), time_s, [](const Key<T>& key, double time) { return key.time_s < time; })
+                                : std::upper_bound(keys.begin(), keys.end(), time_s, [](double time, const Key<T>& key) { return time < key.time_s; });
+    const auto next = static_cast<std::size_t>(after - keys.begin());
+    return std::clamp<std::size_t>(next, 1, keys.size() - 1) - 1;
 }
 
 template <class T>
-T linear_at(const Track<T>& track, std::size_t i, double u) {
-    const T &a = track.keys[i].value, &b = track.keys[i + 1].value;
-    if constexpr (kIsRotation<T>) {
-        const T from = unit(a);
-        return arc(from, nearer(from, unit(b)), u);
-    } else {
-        return a * (1 - u) + b * u;
-    }
-}
-
-template <class T>
-T hermite(const T& a, const T& a_slope, const T& b, const T& b_slope, double u) {
-    const double u2 = u * u, u3 = u2 * u;
-    return a * (2 * u3 - 3 * u2 + 1) + a_slope * (u3 - 2 * u2 + u) + b * (3 * u2 - 2 * u3) + b_slope * (u3 - u2);
-}
-
-/// Neighbours of a key; the key itself at either end, which makes the difference one-sided.
-template <class T>
-std::pair<std::size_t, std::size_t> neighbours(const Track<T>& track, std::size_t i) {
-    return {i == 0 ? 0 : i - 1, std::min(i + 1, track.keys.size() - 1)};
-}
-
-template <class T>
-T slope_at(const Track<T>& track, std::size_t i) {
-    const auto [before, after] = neighbours(track, i);
-    return (track.keys[after].value - track.keys[before].value) / seconds_between(track, before, after);
-}
-
-/// Half the angular velocity at a key, per second, in the key's own frame.
-glm::dvec3 turn_rate_at(const Track<glm::dquat>& track, std::size_t i) {
-    const auto [before, after] = neighbours(track, i);
-    const glm::dquat here = unit(track.keys[i].value);
-    const glm::dvec3 forward = step_between(here, unit(track.keys[after].value));
-    const glm::dvec3 backward = step_between(here, unit(track.keys[before].value));
-    return (forward - backward) / seconds_between(track, before, after);
-}
-
-/// Squad.  Source: Shoemake 1987, with inner points chosen for the wanted velocity at unevenly spaced keys: the
-/// curve's derivative at its start is q0 * (log(q0^-1 q1) + 2 log(q0^-1 s0)).
-glm::dquat squad_at(const Track<glm::dquat>& track, std::size_t i, double u) {
-    const double seconds = seconds_between(track, i, i + 1);
-    const glm::dquat from = unit(track.keys[i].value);
-    const glm::dquat to = nearer(from, unit(track.keys[i + 1].value));
-    const glm::dvec3 step = log_of(glm::conjugate(from) * to);
-    const glm::dquat from_inner = from * exp_of(0.5 * (turn_rate_at(track, i) * seconds - step));
-    const glm::dquat to_inner = to * exp_of(0.5 * (step - turn_rate_at(track, i + 1) * seconds));
-    return unit(arc(arc(from, to, u), arc(from_inner, to_inner, u), 2 * u * (1 - u)));
-}
-
-template <class T>
-T smooth_at(const Track<T>& track, std::size_t i, double u) {
-    if constexpr (kIsRotation<T>) {
-        return squad_at(track, i, u);
-    } else {
-        const double seconds = seconds_between(track, i, i + 1);
-        return hermite<T>(track.keys[i].value, slope_at(track, i) * seconds, track.keys[i + 1].value,
-                          slope_at(track, i + 1) * seconds, u);
-    }
-}
-
-/// glTF 2.0, appendix C.5: tangents are per second, components of quaternions are interpolated one by one.
-template <class T>
-T cubic_at(const Track<T>& track, std::size_t i, double u) {
-    const double seconds = seconds_between(track, i, i + 1);
-    const Key<T>&a = track.keys[i], &b = track.keys[i + 1];
-    return hermite<T>(a.value, a.out_tangent * seconds, b.value, b.in_tangent * seconds, u);
-}
-
-template <class T>
-T step_at(const Track<T>& track, std::size_t i, double) {
-    return track.keys[i].value;
+double part_of_segment(const Track<T>& track, std::size_t i, double time_s) {
+    return (time_s - track.keys[i].time_s) / segments::seconds_between(track, i, i + 1);
 }
 
 template <class T>
 T finished(const T& value) {
-    if constexpr (kIsRotation<T>) return unit(value);
+    if constexpr (kIsRotation<T>) return segments::unit(value);
     return value;
+}
+
+/// Whether two keys hold different values; q and -q are one rotation, and 360 degrees is 0 but for rounding.
+template <class T>
+bool differ(const Key<T>& a, const Key<T>& b) {
+    if constexpr (kIsRotation<T>) {
+        constexpr double kRounding = 1e-12;
+        return std::min(glm::length(a.value - b.value), glm::length(a.value + b.value)) > kRounding;
+    } else {
+        return a.value != b.value;
+    }
+}
+
+bool is_inside(double time, double begin_s, double end_s) { return time > begin_s && time < end_s; }
+
+/// Calls visit(pass) for the passes that meet an interval, at most one more than can be listed.
+template <class Visit>
+void visit_passes(const KeyedSpan& span, double begin_s, double end_s, Visit visit) {
+    const SpanPasses passes = passes_within(span, begin_s, end_s);
+    const double count = std::min(passes.count, static_cast<double>(kMostListedTimes) + 2);
+    for (double i = 0; i < count; ++i) visit(pass_at(span, passes.first + i));
+}
+
+/// Calls visit(j) for the keys of a pass inside an interval, in the order of the shot's time.
+template <class T, class Visit>
+void visit_keys(const Track<T>& track, const SpanPass& pass, double begin_s, double end_s, Visit visit) {
+    const double a = pass.to_local(begin_s), b = pass.to_local(end_s);
+    // A key more on either side: the interval's ends are rounded.
+    const std::size_t low = segment_at(track, std::min(a, b), true), high = segment_at(track, std::max(a, b), false) + 1;
+    for (std::size_t n = 0; n <= high - low; ++n) {
+        const std::size_t j = pass.mirrored ? high - n : low + n;
+        if (is_inside(pass.to_shot(track.keys[j].time_s), begin_s, end_s)) visit(j);
+    }
+}
+
+template <class T>
+bool jumps_at(const Track<T>& track, std::size_t j) {
+    return track.interpolation == Interpolation::step && j > 0 && differ(track.keys[j - 1], track.keys[j]);
+}
+
+/// Whether the value jumps from the end of the keyed span to its start.
+template <class T>
+bool jumps_at_seam(const Track<T>& track) {
+    const std::size_t shown_last = track.keys.size() - (track.interpolation == Interpolation::step ? 2 : 1);
+    return differ(track.keys[shown_last], track.keys.front());
+}
+
+/// Whether the value jumps where pass number - 1 ends and pass `number` begins.
+template <class T>
+bool jumps_between_passes(const Track<T>& track, double number) {
+    const Extrapolation mode = number > 0 ? track.after : track.before;
+    if (mode == Extrapolation::repeat) return jumps_at_seam(track);
+    return number == 1 && mode != Extrapolation::pingpong && jumps_at(track, track.keys.size() - 1);
+}
+
+template <class T>
+bool ever_jumps(const Track<T>& track) {
+    if (track.is_constant()) return false;
+    const bool repeats = track.before == Extrapolation::repeat || track.after == Extrapolation::repeat;
+    return track.interpolation == Interpolation::step || (repeats && jumps_at_seam(track));
+}
+
+[[noreturn]] void refuse_jumps(double begin_s, double end_s) {
+    throw InputError(fmt::format("a track jumps more than {} times from {} s to {} s", kMostListedTimes, format_number(begin_s), format_number(end_s)),
+                     "expected fewer step keys and repeats in that time");
+}
+
+// ---- How far a value travels: there and back added up, jumps left out ----
+
+double distance(const Track<double>& track, std::size_t i, double from_u, double to_u) {
+    return std::abs(segments::value_at(track, i, to_u) - segments::value_at(track, i, from_u));
+}
+
+/// Radians.
+double distance(const Track<glm::dquat>& track, std::size_t i, double from_u, double to_u) {
+    const glm::dquat difference = glm::conjugate(segments::unit(segments::value_at(track, i, from_u))) * segments::unit(segments::value_at(track, i, to_u));
+    const double shorter = 2 * std::atan2(glm::length(glm::dvec3(difference.x, difference.y, difference.z)), std::abs(difference.w));
+    if (!track.keys[i].spin) return shorter;
+    const auto y = [&](double u) { return track.keys[i].ease ? eased(*track.keys[i].ease, u) : u; };
+    const segments::SegmentTurn turn = segments::turn_of_segment(track, i);
+    if (track.interpolation == Interpolation::linear) return 2 * glm::length(turn.step + turn.extra) * std::abs(y(to_u) - y(from_u));
+    const auto done = [&](double u) { return segments::whole_turns_done(track, i, y(u)); };
+    // Squad's own turn is within its arc; twice, because it may swing out.
+    return 2 * glm::distance(done(from_u), done(to_u)) + 4 * glm::length(turn.step) * std::abs(y(to_u) - y(from_u));
+}
+
+double end_speed(const Track<double>& track, bool after) { return std::abs(segments::end_slope_before_easing(track, after)); }
+double end_speed(const Track<glm::dquat>& track, bool after) { return 2 * glm::length(segments::end_turn_rate_before_easing(track, after)); }
+
+/// Within the keyed span.
+template <class T>
+double travel_of_keys(const Track<T>& track, double begin_s, double end_s) {
+    double travel = 0;
+    if (track.interpolation == Interpolation::step) return travel;
+    const std::size_t last = segment_at(track, end_s, true);
+    for (std::size_t i = segment_at(track, begin_s, false); i <= last; ++i)
+        travel += distance(track, i, std::clamp(part_of_segment(track, i, begin_s), 0.0, 1.0), std::clamp(part_of_segment(track, i, end_s), 0.0, 1.0));
+    return travel;
+}
+
+/// Beyond an end that continues.
+template <class T>
+double travel_beyond(const Track<T>& track, double begin_s, double end_s) {
+    double travel = 0;
+    const auto speed = [&](bool after) { return end_speed(track, after) * std::abs(segments::end_easing_slope(track, after)); };
+    if (track.before == Extrapolation::continued) travel += speed(false) * std::max(0.0, std::min(end_s, track.keys.front().time_s) - begin_s);
+    if (track.after == Extrapolation::continued) travel += speed(true) * std::max(0.0, end_s - std::max(begin_s, track.keys.back().time_s));
+    return travel;
+}
+
+template <class T>
+double travel_in(const Track<T>& track, double begin_s, double end_s) {
+    if (track.is_constant()) return 0;
+    const KeyedSpan span = span_of(track);
+    const SpanPasses passes = passes_within(span, begin_s, end_s);
+    double travel = travel_beyond(track, begin_s, end_s);
+    if (passes.count > 3) return travel + passes.count * travel_of_keys(track, span.first_s, span.last_s);
+    visit_passes(span, begin_s, end_s, [&](const SpanPass& pass) {
+        const double a = pass.to_local(begin_s), b = pass.to_local(end_s);
+        travel += travel_of_keys(track, std::min(a, b), std::max(a, b));
+    });
+    return travel;
 }
 
 }  // namespace
@@ -171,26 +167,34 @@ T finished(const T& value) {
 template <class T>
 T evaluate(const Track<T>& track, double time_s) {
     assert(!track.keys.empty());
-    const auto& keys = track.keys;
-    if (keys.size() == 1 || !(time_s > keys.front().time_s)) return finished(keys.front().value);
-    if (time_s >= keys.back().time_s) return finished(keys.back().value);
-    const auto after = std::upper_bound(keys.begin(), keys.end(), time_s,
-                                        [](double time, const Key<T>& key) { return time < key.time_s; });
-    const auto i = static_cast<std::size_t>(after - keys.begin()) - 1;
-    const double u = eased(keys[i].ease, (time_s - keys[i].time_s) / seconds_between(track, i, i + 1));
-    using Segment = T (*)(const Track<T>&, std::size_t, double);
-    constexpr Segment kSegments[] = {step_at<T>, linear_at<T>, smooth_at<T>, cubic_at<T>};
-    return finished(kSegments[static_cast<int>(track.interpolation)](track, i, u));
+    if (track.keys.size() == 1) return finished(track.keys.front().value);
+    const FoldedTime at = fold(span_of(track), time_s);
+    if (at.beyond_s != 0) return finished(segments::continued(track, at.beyond_s));
+    const std::size_t i = segment_at(track, at.time_s, at.mirrored);
+    const double u = part_of_segment(track, i, at.time_s);
+    if (track.interpolation == Interpolation::step) return finished(track.keys[u >= 1 && !at.mirrored ? i + 1 : i].value);
+    return finished(segments::value_at(track, i, u));
 }
 
 template <class T>
 std::vector<double> discontinuities(const Track<T>& track, double begin_s, double end_s) {
     std::vector<double> times;
-    if (track.interpolation != Interpolation::step) return times;
-    for (std::size_t i = 1; i < track.keys.size(); ++i) {
-        const double time = track.keys[i].time_s;
-        if (time > begin_s && time < end_s && track.keys[i].value != track.keys[i - 1].value) times.push_back(time);
-    }
+    if (!ever_jumps(track)) return times;
+    const KeyedSpan span = span_of(track);
+    const std::size_t last = track.keys.size() - 1;
+    const auto add = [&](double time) {
+        if (!is_inside(time, begin_s, end_s)) return;
+        times.push_back(time);
+        if (times.size() > kMostListedTimes) refuse_jumps(begin_s, end_s);
+    };
+    visit_passes(span, begin_s, end_s, [&](const SpanPass& pass) {
+        if (jumps_between_passes(track, pass.number)) add(pass.to_shot(pass.mirrored ? span.last_s : span.first_s));
+        visit_keys(track, pass, begin_s, end_s, [&](std::size_t j) {
+            if (j > 0 && j < last && jumps_at(track, j)) add(pass.to_shot(track.keys[j].time_s));
+        });
+        // The pass after the last one may not be visited: where it does not loop, or begins beyond the interval.
+        if (pass.number == 0 && track.after != Extrapolation::repeat && jumps_between_passes(track, 1.0)) add(span.last_s);
+    });
     return times;
 }
 
@@ -198,43 +202,42 @@ template <class T>
 std::vector<double> key_times(const Track<T>& track, double begin_s, double end_s) {
     std::vector<double> times;
     if (track.is_constant()) return times;
-    const auto first = std::upper_bound(track.keys.begin(), track.keys.end(), begin_s,
-                                        [](double time, const Key<T>& key) { return time < key.time_s; });
-    for (auto key = first; key != track.keys.end() && key->time_s < end_s; ++key) times.push_back(key->time_s);
+    const KeyedSpan span = span_of(track);
+    const double first_pass = passes_within(span, begin_s, end_s).first;
+    visit_passes(span, begin_s, end_s, [&](const SpanPass& pass) {
+        const std::size_t start = pass.mirrored ? track.keys.size() - 1 : 0;
+        visit_keys(track, pass, begin_s, end_s, [&](std::size_t j) {
+            const bool is_end_of_pass_before = j == start && pass.number != first_pass;
+            if (!is_end_of_pass_before && times.size() < kMostListedTimes) times.push_back(pass.to_shot(track.keys[j].time_s));
+        });
+    });
     return times;
+}
+
+template <class T>
+bool varies(const Track<T>& track) {
+    for (std::size_t i = 1; i < track.keys.size(); ++i) {
+        const Key<T>&a = track.keys[i - 1], &b = track.keys[i];
+        if (a.value != b.value) return true;
+        if (track.interpolation == Interpolation::cubic && (a.out_tangent != T{} || b.in_tangent != T{})) return true;
+        if constexpr (kIsRotation<T>)
+            if (a.spin && segments::turn_of_segment(track, i - 1).extra != glm::dvec3(0)) return true;
+    }
+    return false;
 }
 
 #define KADR_TRACK_OF(T)                                                     \
     template T evaluate(const Track<T>&, double);                           \
     template std::vector<double> discontinuities(const Track<T>&, double, double); \
-    template std::vector<double> key_times(const Track<T>&, double, double);
+    template std::vector<double> key_times(const Track<T>&, double, double); \
+    template bool varies(const Track<T>&);
 KADR_TRACK_OF(double)
 KADR_TRACK_OF(glm::dvec2)
 KADR_TRACK_OF(glm::dvec3)
 KADR_TRACK_OF(glm::dquat)
 #undef KADR_TRACK_OF
 
-glm::dquat evaluate(const RotationTrack& track, double time_s) {
-    if (!track.axis_angle) return evaluate(track.orientation, time_s);
-    return glm::angleAxis(evaluate(track.axis_angle->angle_rad, time_s), track.axis_angle->axis);
-}
-
-bool TransformTrack::is_constant() const {
-    const bool rotation_is_constant = rotate.axis_angle ? rotate.axis_angle->angle_rad.is_constant() : rotate.orientation.is_constant();
-    return translate.is_constant() && rotation_is_constant && scale.is_constant();
-}
-
-glm::dmat4 evaluate(const TransformTrack& track, double time_s) {
-    const glm::dmat3 rotation = glm::mat3_cast(evaluate(track.rotate, time_s));
-    const glm::dvec3 scale = evaluate(track.scale, time_s);
-    return {glm::dvec4(rotation[0] * scale.x, 0), glm::dvec4(rotation[1] * scale.y, 0),
-            glm::dvec4(rotation[2] * scale.z, 0), glm::dvec4(evaluate(track.translate, time_s), 1)};
-}
-
-glm::dquat rotation_from_degrees(glm::dvec3 degrees) {
-    const glm::dvec3 radians = glm::radians(degrees);
-    return glm::angleAxis(radians.z, glm::dvec3(0, 0, 1)) * glm::angleAxis(radians.y, glm::dvec3(0, 1, 0)) *
-           glm::angleAxis(radians.x, glm::dvec3(1, 0, 0));
-}
+double travel_of(const Track<double>& track, double begin_s, double end_s) { return travel_in(track, begin_s, end_s); }
+double turn_of(const Track<glm::dquat>& track, double begin_s, double end_s) { return travel_in(track, begin_s, end_s); }
 
 }  // namespace kadr

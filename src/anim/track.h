@@ -2,35 +2,53 @@
 
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "anim/easing.h"
+#include "anim/extrapolation.h"
+
 namespace kadr {
 
 enum class Interpolation { step, linear, smooth, cubic };
 
-/// CSS timing function of the segment that starts at a key: control points (x1, y1), (x2, y2) of a cubic Bézier from
-/// (0,0) to (1,1), x in [0,1].  Source: CSS Easing Functions Level 1, 2.2.
-using Ease = std::array<double, 4>;
+template <class T>
+inline constexpr bool kIsRotation = std::is_same_v<T, glm::dquat>;
+
+/// Which way and how often a rotation turns on its way to the next key.
+struct Spin {
+    int turns = 0;          ///< whole turns beside the way to the next key; negative: backwards
+    glm::dvec3 axis{0};     ///< unit, in the frame that the rotation maps to: the turn runs counterclockwise about it, up
+                            ///< to one turn without `turns`. Zero: the shorter arc's own axis
+    bool operator==(const Spin&) const = default;
+};
+struct NoSpin {
+    bool operator==(const NoSpin&) const = default;
+};
 
 template <class T>
 struct Key {
     double time_s = 0;
     T value{};
-    std::optional<Ease> ease;     ///< shapes the segment that starts here
+    std::optional<Ease> ease;      ///< shapes the segment that starts here
     T in_tangent{}, out_tangent{}; ///< per second; used by Interpolation::cubic alone (glTF's CUBICSPLINE)
+    /// Rotations: of the segment that starts here, under linear and smooth.
+    [[no_unique_address]] std::conditional_t<kIsRotation<T>, std::optional<Spin>, NoSpin> spin{};
     bool operator==(const Key&) const = default;
 };
 
-/// A value over time: one key means a constant; outside the keys the end values hold.
-/// T: double, glm::dvec2, glm::dvec3 (linear per component) or glm::dquat (slerp by the shorter arc; smooth is squad;
-/// cubic is glTF's componentwise spline, then normalised).
+/// A value over time: one key means a constant.
+/// T: double, glm::dvec2, glm::dvec3 (linear per component) or glm::dquat (slerp by the shorter arc unless a key says
+/// otherwise; smooth is squad; cubic is glTF's componentwise spline, then normalised).
 template <class T>
 struct Track {
     std::vector<Key<T>> keys;  ///< strictly ascending times; never empty once parsed
     Interpolation interpolation = Interpolation::linear;
+    Extrapolation before = Extrapolation::hold, after = Extrapolation::hold;  ///< without effect on a single key
+    bool overshoot = true;  ///< false: smooth never leaves the range of the two keys around it (not for rotations)
 
     Track() = default;
     /*implicit*/ Track(T constant) : keys{Key<T>{0, constant, {}, {}, {}}} {}
@@ -38,42 +56,31 @@ struct Track {
     bool is_constant() const { return keys.size() <= 1; }
 };
 
-/// Value at a time in seconds. Quaternions come back normalised.
+/// Value at a time in seconds. Where it jumps the later value holds. Quaternions come back normalised.
 template <class T>
 T evaluate(const Track<T>& track, double time_s);
 
-/// Times inside (begin, end) where the value jumps (step keys): a shutter has to be split there.
+/// As many times as the two functions below list.
+inline constexpr std::size_t kMostListedTimes = 1024;
+
+/// Times inside (begin, end), ascending, where the value jumps (step keys, seams of a repeated span): a shutter has to
+/// be split there.
+/// @throws InputError  for more than kMostListedTimes jumps
 template <class T>
 std::vector<double> discontinuities(const Track<T>& track, double begin_s, double end_s);
 
-/// Times of keys inside (begin, end): where the derivative may jump.
+/// Times of keys inside (begin, end), ascending, where the derivative may jump; those of repeated spans too. The first
+/// kMostListedTimes of them: no grid of samples meets more.
 template <class T>
 std::vector<double> key_times(const Track<T>& track, double begin_s, double end_s);
 
-/// A rotation over time: quaternion keys, or a fixed axis with a keyed angle, which may turn any number of times.
-struct RotationTrack {
-    Track<glm::dquat> orientation{glm::dquat(1, 0, 0, 0)};
-    struct AxisAngle {
-        glm::dvec3 axis{0, 1, 0};   ///< unit length
-        Track<double> angle_rad{0.0};
-        bool operator==(const AxisAngle&) const = default;
-    };
-    std::optional<AxisAngle> axis_angle;  ///< wins over orientation where present
-    bool operator==(const RotationTrack&) const = default;
-};
-glm::dquat evaluate(const RotationTrack& track, double time_s);
+/// Whether the value ever changes.
+template <class T>
+bool varies(const Track<T>& track);
 
-/// Translation, rotation, scale; parent_from_child = T * R * S.
-struct TransformTrack {
-    Track<glm::dvec3> translate{glm::dvec3(0)};
-    RotationTrack rotate;
-    Track<glm::dvec3> scale{glm::dvec3(1)};
-    bool operator==(const TransformTrack&) const = default;
-    bool is_constant() const;
-};
-glm::dmat4 evaluate(const TransformTrack& track, double time_s);
-
-/// R = Rz * Ry * Rx of degrees about fixed axes, x first.
-glm::dquat rotation_from_degrees(glm::dvec3 degrees);
+/// How far a number goes in (begin, end), there and back from key to key added up; jumps are left out.
+double travel_of(const Track<double>& track, double begin_s, double end_s);
+/// Radians that the rotation turns in (begin, end), likewise.
+double turn_of(const Track<glm::dquat>& track, double begin_s, double end_s);
 
 }  // namespace kadr

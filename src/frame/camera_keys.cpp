@@ -50,21 +50,63 @@ void set_authored(CameraState& camera, const SceneCamera& source, double aspect)
 
 glm::dvec3 target_of(const BoundShot& shot, double time_s) {
     const Target& target = shot.shot().camera.look_at;
-    if (const auto* point = std::get_if<Track<glm::dvec3>>(&target)) return evaluate(*point, time_s);
+    if (const auto* point = std::get_if<PositionTrack>(&target)) return evaluate(*point, time_s);
     return shot.bindings().position_of(std::get<NodeReference>(target), time_s);
 }
 
-CameraState placed_by_shot(const BoundShot& shot, double time_s) {
+bool stands_still(const BoundShot& shot, const NodeReference& reference) {
+    const int node = shot.node_of(reference);
+    if (node >= 0) return !shot.bindings().rig.moves(node);
+    return !varies(shot.shot().scenes[static_cast<std::size_t>(shot.scene_of(reference))].transform);
+}
+
+/// Whether the view never changes but for its lens.
+bool looks_one_way(const BoundShot& shot) {
     const CameraSpec& spec = shot.shot().camera;
-    CameraState camera;
-    camera.position = evaluate(spec.position, time_s);
+    if (varies(spec.position) || varies(spec.up) || (spec.around && !stands_still(shot, *spec.around))) return false;
+    if (const auto* point = std::get_if<PositionTrack>(&spec.look_at)) return !varies(*point);
+    return stands_still(shot, std::get<NodeReference>(spec.look_at));
+}
+
+/// A view straight up or down needs an `up` of its own. Only a camera that never turns may do with the stand-in of
+/// look_rotation: under one that does the picture would flip.
+void check_up(const BoundShot& shot, const glm::dvec3& forward, const glm::dvec3& up, double time_s) {
+    constexpr double kParallel = 1e-9;
+    const CameraSpec& spec = shot.shot().camera;
+    if (glm::length(glm::cross(forward, up)) > kParallel * glm::length(up)) return;
+    if (spec.up_given || !looks_one_way(shot))
+        refuse(spec, fmt::format("camera.up lies along the view at {} s", format_number(time_s)),
+               "expected a direction beside the view, such as up: [0, 0, -1] for one straight down");
+}
+
+/// Towards look_at, or along the path. Sets how far away the subject is.
+glm::dvec3 view_direction(const BoundShot& shot, double time_s, CameraState& camera) {
+    const CameraSpec& spec = shot.shot().camera;
+    if (spec.position.turns_along()) {
+        const glm::dvec3 along = tangent(spec.position, time_s);
+        if (along == glm::dvec3(0))
+            refuse(spec, fmt::format("the path of camera.position turns back on itself at {} s and has no direction there", format_number(time_s)),
+                   "expected a point beside it that makes the turn a curve, or look_at instead of orient: along");
+        camera.subject_distance = std::min(1.0, 0.1 * spec.position.path->path.length());  // a scale; nothing says what it looks at
+        return along;
+    }
     const glm::dvec3 towards = target_of(shot, time_s) - camera.position;
     camera.subject_distance = glm::length(towards);
     const double rounding = 1e-15 * glm::length(camera.position);
     if (!(camera.subject_distance > rounding) || !std::isfinite(camera.subject_distance))
         refuse(spec, fmt::format("camera.position and camera.look_at are the same point at {} s", format_number(time_s)),
                "expected two points: the view has no direction");
-    camera.rotation = look_rotation(towards / camera.subject_distance, evaluate(spec.up, time_s));
+    return towards / camera.subject_distance;
+}
+
+CameraState placed_by_shot(const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    CameraState camera;
+    camera.position = evaluate(spec.position, time_s);
+    if (spec.around) camera.position += shot.bindings().position_of(*spec.around, time_s);
+    const glm::dvec3 forward = view_direction(shot, time_s, camera), up = evaluate(spec.up, time_s);
+    check_up(shot, forward, up, time_s);
+    camera.rotation = look_rotation(forward, up);
     camera.focus_distance = camera.subject_distance;
     set_field_of_view(camera, spec, aspect_of(shot.shot().image), time_s);
     return camera;
@@ -88,6 +130,30 @@ CameraState placed_by_node(const BoundShot& shot, double time_s) {
     return camera;
 }
 
+/// Forward along the view axis; the view keeps its direction.
+void apply_dolly(CameraState& camera, const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    if (!spec.dolly_m) return;
+    const double forward = evaluate(*spec.dolly_m, time_s);
+    camera.position += camera.rotation * glm::dvec3(0, 0, -forward);
+    if (spec.gltf || spec.position.turns_along()) return;  // no target
+    if (!(forward < camera.subject_distance))
+        refuse(spec, fmt::format("camera.dolly is {} m at {} s, and what the camera looks at is {} m away", format_number(forward), format_number(time_s), format_number(camera.subject_distance)),
+               "expected a dolly that stops before camera.look_at");
+    camera.subject_distance -= forward;
+    camera.focus_distance = camera.subject_distance;
+}
+
+/// About and along the camera's own axes. Last: the lens is focused by someone who holds still.
+void apply_shake(CameraState& camera, const BoundShot& shot, double time_s) {
+    const CameraSpec& spec = shot.shot().camera;
+    if (!spec.shake) return;
+    const ShakeOffset shake = evaluate(*spec.shake, time_s);
+    const double angle = glm::length(shake.turn_rad);
+    camera.position += camera.rotation * shake.offset_m;
+    if (angle > 0) camera.rotation = glm::normalize(camera.rotation * glm::angleAxis(angle, shake.turn_rad / angle));
+}
+
 void set_focus(CameraState& camera, const BoundShot& shot, double time_s) {
     const CameraSpec& spec = shot.shot().camera;
     if (!spec.focus) return;
@@ -97,7 +163,7 @@ void set_focus(CameraState& camera, const BoundShot& shot, double time_s) {
         const glm::dvec3 point = shot.bindings().position_of(std::get<NodeReference>(*spec.focus), time_s);
         camera.focus_distance = glm::dot(point - camera.position, camera.rotation * glm::dvec3(0, 0, -1));
     }
-    if (spec.gltf) camera.subject_distance = std::max(std::abs(camera.focus_distance), 1e-9);
+    if (spec.gltf || spec.position.turns_along()) camera.subject_distance = std::max(std::abs(camera.focus_distance), 1e-9);
 }
 
 /// Thin lens: the aperture's diameter is the focal length over the f-stop; the focal length is that of the sensor.
@@ -149,10 +215,12 @@ void visit_tracks(const CameraSpec& spec, Visit visit) {
     if (!spec.gltf) {
         visit(spec.position);
         visit(spec.up);
-        if (const auto* point = std::get_if<Track<glm::dvec3>>(&spec.look_at)) visit(*point);
+        if (const auto* point = std::get_if<PositionTrack>(&spec.look_at)) visit(*point);
         if (spec.focal_length_mm) visit(*spec.focal_length_mm);
         if (spec.vertical_fov_rad) visit(*spec.vertical_fov_rad);
     }
+    if (spec.dolly_m) visit(*spec.dolly_m);
+    if (spec.shake) visit(*spec.shake);
     if (spec.f_stop) visit(*spec.f_stop);
     if (!spec.focus) return;
     if (const auto* distance = std::get_if<Track<double>>(&*spec.focus)) visit(*distance);
@@ -162,10 +230,16 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
     visit_tracks(shot.shot().camera, [&](const auto& track) { add(key_times(track, open_s, close_s)); });
+    const CameraSpec& spec = shot.shot().camera;
     const Bindings& bindings = shot.bindings();
+    const auto add_node = [&](const NodeReference& reference) {
+        const int node = shot.node_of(reference);
+        if (node >= 0) return add(bindings.rig.key_times_of(node, open_s, close_s));
+        add(key_times(shot.shot().scenes[static_cast<std::size_t>(shot.scene_of(reference))].transform, open_s, close_s));
+    };
     if (bindings.camera_node >= 0) add(bindings.rig.key_times_of(bindings.camera_node, open_s, close_s));
-    if (const auto* node = std::get_if<NodeReference>(&shot.shot().camera.look_at); node && !shot.shot().camera.gltf)
-        if (const int at = shot.node_of(*node); at >= 0) add(bindings.rig.key_times_of(at, open_s, close_s));
+    if (spec.around) add_node(*spec.around);
+    if (const auto* node = std::get_if<NodeReference>(&spec.look_at); node && !spec.gltf) add_node(*node);
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
     return times;
 }
@@ -174,8 +248,10 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
 
 CameraState camera_at(const BoundShot& shot, double time_s) {
     CameraState camera = shot.bindings().camera_node >= 0 ? placed_by_node(shot, time_s) : placed_by_shot(shot, time_s);
+    apply_dolly(camera, shot, time_s);
     set_focus(camera, shot, time_s);
     set_lens(camera, shot, time_s);
+    apply_shake(camera, shot, time_s);
     return camera;
 }
 

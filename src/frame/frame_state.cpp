@@ -32,6 +32,7 @@ std::vector<NodeReference> references_of(const Shot& shot) {
         if (const auto* reference = std::get_if<NodeReference>(&value)) all.push_back(*reference);
     };
     if (!shot.camera.gltf) add(shot.camera.look_at);
+    if (shot.camera.around) all.push_back(*shot.camera.around);
     if (shot.camera.focus) add(*shot.camera.focus);
     for (const LightSpec& light : shot.lights)
         if (light.look_at) add(*light.look_at);
@@ -59,6 +60,10 @@ void check_integrator(const Shot& shot, std::vector<Diagnostic>& problems) {
 }
 
 void check_lens(const Shot& shot, std::vector<Diagnostic>& problems) {
+    const bool along = !shot.camera.gltf && shot.camera.position.turns_along();
+    if (along && shot.camera.f_stop && !shot.camera.focus)
+        problems.push_back(problem_at(shot.camera.where, "camera.f_stop is given without camera.focus",
+                                      "expected a distance or a node in camera.focus: a camera that looks along its path has no look_at to focus on"));
     if (shot.camera.gltf && shot.camera.f_stop && !shot.camera.focus)
         problems.push_back(problem_at(shot.camera.where, "camera.f_stop is given without camera.focus",
                                       "expected a distance or a node in camera.focus: an authored camera has no look_at to focus on"));

@@ -26,7 +26,7 @@ kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), 
 glm::dvec3 direction_of(const BoundShot& shot, const LightSpec& spec, const glm::dvec3& position, double time_s) {
     glm::dvec3 direction = evaluate(spec.direction, time_s);
     if (spec.look_at) {
-        const auto* point = std::get_if<Track<glm::dvec3>>(&*spec.look_at);
+        const auto* point = std::get_if<PositionTrack>(&*spec.look_at);
         direction = (point ? evaluate(*point, time_s) : shot.bindings().position_of(std::get<NodeReference>(*spec.look_at), time_s)) - position;
     }
     const double length = glm::length(direction);
@@ -124,7 +124,7 @@ void visit_tracks(const LightSpec& spec, Visit visit) {
     visit(spec.position);
     visit(spec.direction);
     if (spec.look_at)
-        if (const auto* point = std::get_if<Track<glm::dvec3>>(&*spec.look_at)) visit(*point);
+        if (const auto* point = std::get_if<PositionTrack>(&*spec.look_at)) visit(*point);
     visit(spec.inner_rad);
     visit(spec.outer_rad);
     visit(spec.radius_m);

@@ -18,53 +18,7 @@ glm::dmat4 from_parts(const glm::dvec3& translation, const glm::dquat& rotation,
 
 void append(std::vector<double>& all, const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); }
 
-std::vector<double> key_times(const RotationTrack& track, double begin_s, double end_s) {
-    return track.axis_angle ? key_times(track.axis_angle->angle_rad, begin_s, end_s) : key_times(track.orientation, begin_s, end_s);
-}
-
-std::vector<double> key_times(const TransformTrack& track, double begin_s, double end_s) {
-    std::vector<double> times = key_times(track.translate, begin_s, end_s);
-    append(times, key_times(track.rotate, begin_s, end_s));
-    append(times, key_times(track.scale, begin_s, end_s));
-    return times;
-}
-
-/// Both ends of an interval and the keys between them.
-template <class T>
-std::vector<double> corners_of(const Track<T>& track, double begin_s, double end_s) {
-    std::vector<double> times{begin_s};
-    append(times, key_times(track, begin_s, end_s));
-    times.push_back(end_s);
-    return times;
-}
-
-double turn_of(const Track<glm::dquat>& track, double begin_s, double end_s) {
-    double turn = 0;
-    glm::dquat previous = evaluate(track, begin_s);
-    for (const double time : corners_of(track, begin_s, end_s)) {
-        const glm::dquat next = evaluate(track, time);
-        turn += angle_between(previous, next);
-        previous = next;
-    }
-    return turn;
-}
-
-double turn_of(const RotationTrack& track, double begin_s, double end_s) {
-    if (!track.axis_angle) return turn_of(track.orientation, begin_s, end_s);
-    double turn = 0;
-    double previous = evaluate(track.axis_angle->angle_rad, begin_s);
-    for (const double time : corners_of(track.axis_angle->angle_rad, begin_s, end_s)) {
-        const double next = evaluate(track.axis_angle->angle_rad, time);
-        turn += std::abs(next - previous);
-        previous = next;
-    }
-    return turn;
-}
-
 }  // namespace
-
-bool varies(const RotationTrack& track) { return track.axis_angle ? varies(track.axis_angle->angle_rad) : varies(track.orientation); }
-bool varies(const TransformTrack& track) { return varies(track.translate) || varies(track.rotate) || varies(track.scale); }
 
 NodeRig::NodeRig(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips) : scene_(&scene) {
     const std::size_t count = scene.nodes.size();
@@ -247,7 +201,7 @@ NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s, 
     }
     if (scene_->nodes[index(node)].parent < 0 && file.moves) {
         add_keys(key_times(*file.transform, begin_s, end_s), begin_s, end_s);
-        own.turn_rad += turn_of(file.transform->rotate, begin_s, end_s);
+        own.turn_rad += turn_of(*file.transform, begin_s, end_s);
     }
     own.keys = static_cast<int>(times.size());
     own.grid = even_segments_for(times);
@@ -275,12 +229,7 @@ std::vector<double> NodeRig::discontinuities(double begin_s, double end_s, doubl
     std::vector<double> times;
     const auto add = [&times](const auto& track, double from, double to) { append(times, kadr::discontinuities(track, from, to)); };
     for (const FileMotion& file : files_) {
-        add(file.transform->translate, begin_s, end_s);
-        add(file.transform->scale, begin_s, end_s);
-        if (file.transform->rotate.axis_angle)
-            add(file.transform->rotate.axis_angle->angle_rad, begin_s, end_s);
-        else
-            add(file.transform->rotate.orientation, begin_s, end_s);
+        add(*file.transform, begin_s, end_s);
     }
     for (const int node : order_) {
         if (animated_index_[index(node)] < 0 || !reachable(node)) continue;

@@ -86,17 +86,4 @@ private:
     std::vector<glm::dmat4> local_, world_;  ///< of what does not move
 };
 
-/// Whether a track has more than one value.
-template <class T>
-bool varies(const Track<T>& track) {
-    for (std::size_t i = 1; i < track.keys.size(); ++i)
-        if (track.keys[i].value != track.keys[0].value) return true;
-    if (track.interpolation != Interpolation::cubic) return false;
-    for (const Key<T>& key : track.keys)
-        if (track.keys.size() > 1 && (key.in_tangent != T{} || key.out_tangent != T{})) return true;
-    return false;
-}
-bool varies(const RotationTrack& track);
-bool varies(const TransformTrack& track);
-
 }  // namespace kadr

@@ -19,13 +19,21 @@ std::string kind_of(const Track<T>& track) {
     return std::string(name_of(track.interpolation)) + (eased ? ", eased" : "");
 }
 
+std::string outside_of(Extrapolation before, Extrapolation after) {
+    constexpr const char* kNames[] = {"hold", "repeat", "pingpong", "continue"};
+    std::string text;
+    if (before != Extrapolation::hold) text += std::string("before: ") + kNames[static_cast<int>(before)];
+    if (after != Extrapolation::hold) text += std::string(text.empty() ? "" : ", ") + "after: " + kNames[static_cast<int>(after)];
+    return text;
+}
+
 /// Takes the tracks of a shot one by one; each kind of value knows its own parts.
 class TrackList {
 public:
     template <class T>
     void add(const std::string& name, const Track<T>& track) {
         if (track.is_constant()) return;
-        TrackInfo info{name, kind_of(track), {}, {}, {}, {}};
+        TrackInfo info{name, kind_of(track), outside_of(track.before, track.after), {}, {}, {}};
         for (const Key<T>& key : track.keys) info.keys_s.push_back(key.time_s);
         info.changes = [&track](double begin_s, double end_s) {
             return evaluate(track, begin_s) != evaluate(track, end_s);
@@ -36,6 +44,18 @@ public:
     void add(const std::string& name, const RotationTrack& track) {
         if (track.axis_angle) return add(name + ".angle", track.axis_angle->angle_rad);
         add(name, track.orientation);
+    }
+    void add(const std::string& name, const PositionTrack& track) {
+        if (track.path) return add(name + ".at", track.path->at);
+        if (!track.orbit) return add(name, track.keyed);
+        add(name + ".orbit.around", track.orbit->around);
+        add(name + ".orbit.radius", track.orbit->radius_m);
+        add(name + ".orbit.height", track.orbit->height_m);
+        add(name + ".orbit.turns", track.orbit->turns);
+    }
+    void add(const std::string& name, const Shake& shake) {
+        add(name + ".amplitude", shake.amplitude_m);
+        add(name + ".angle", shake.angle_rad);
     }
     void add(const std::string& name, const TransformTrack& track) {
         add(name + ".translate", track.translate);
@@ -84,6 +104,8 @@ void add_camera(TrackList& list, const CameraSpec& camera) {
         list.add("camera.focal_length", camera.focal_length_mm);
         list.add("camera.vertical_fov", camera.vertical_fov_rad);
     }
+    list.add("camera.dolly", camera.dolly_m);
+    list.add("camera.shake", camera.shake);
     list.add("camera.f_stop", camera.f_stop);
     list.add("camera.focus", camera.focus);
 }

@@ -15,6 +15,7 @@ std::string type_text(const FieldSpec& field) {
     std::string text = field.forms == 0 ? "any value" : expectation(field);
     if (field.forms == kSection) text = "a map";
     if (field.forms & kTrack) text += "; may be a track";
+    if (field.forms & kMotion) text += ", { path: ... } or { orbit: ... }";
     return text;
 }
 
@@ -62,6 +63,12 @@ std::string whole_manual() {
     append_rows(text, "key", 2);
     text += "\nRotations about an axis\n";
     append_rows(text, "rotation", 2);
+    text += "\nPositions that travel, wherever a position may be keyed\n";
+    append_rows(text, "motion", 2);
+    text += "\nOrbits\n";
+    append_rows(text, "orbit", 2);
+    text += "\nShake\n";
+    append_rows(text, "shake", 2);
     return text + units_text();
 }
 

@@ -119,6 +119,18 @@ const FormRow kFormRows[] = {
          return any_of(
              {{{"type", "number"}, {"exclusiveMinimum", 0}}, {{"type", "string"}, {"pattern", "^[0-9]+/[0-9]+$"}}});
      }},
+    {kPoints,
+     [](const FieldSpec& field) {
+         return Json{{"type", "array"}, {"items", list_schema(component_schema(field), 3)}, {"minItems", 2}};
+     }},
+    {kOrbit,
+     [](const FieldSpec&) {
+         return Json{{"$ref", "#/$defs/orbit"}};
+     }},
+    {kShake,
+     [](const FieldSpec&) {
+         return Json{{"$ref", "#/$defs/shake"}};
+     }},
     {kKeys,
      [](const FieldSpec&) {
          return Json{{"type", "object"}, {"minProperties", 1}};
@@ -143,11 +155,12 @@ Json value_schema(const FieldSpec& field) {
     // What the table describes with words, because the reader decides by looking at the value.
     const std::string_view path = field.path;
     if (path == "shutter") forms.push_back({{"const", 0}});
-    if (path == "key.ease") forms.push_back(list_schema({{"type", "number"}}, 4));
+    if (path == "key.ease" || path == "motion.ease" || path == "orbit.ease") forms.push_back(list_schema({{"type", "number"}}, 4));
     if (path == "scenes") forms.front()["items"] = any_of({forms.front()["items"], {{"type", "string"}}});
     if (path == "output.video") forms.push_back({{"const", "none"}});
     if (forms.empty()) return Json::object();
     Json value = any_of(std::move(forms));
+    if (field.forms & kMotion) return any_of({value, track_schema(value), {{"$ref", "#/$defs/motion"}}});
     return field.forms & kTrack ? any_of({value, track_schema(value)}) : value;
 }
 
@@ -175,7 +188,7 @@ std::string schema_as_json() {
     schema.update(section_schema(""));
     schema["properties"]["kadr"]["const"] = 1;
     schema["properties"].erase("kadr-reel");
-    schema["$defs"]["rotation"] = section_schema("rotation");
+    for (const char* grammar : {"rotation", "motion", "orbit", "shake"}) schema["$defs"][grammar] = section_schema(grammar);
     return schema.dump(2) + "\n";
 }
 

@@ -66,7 +66,8 @@ void check_keys_of_kind(const Section& section, LightKind kind) {
 /// Candela of a light that sends its power evenly into all directions.
 std::optional<Track<double>> intensity_of_power(std::optional<Track<double>> power) {
     if (!power) return std::nullopt;
-    for (Key<double>& key : power->keys) key.value /= 4 * std::numbers::pi;
+    for (Key<double>& key : power->keys)
+        for (double* number : {&key.value, &key.in_tangent, &key.out_tangent}) *number /= 4 * std::numbers::pi;
     return power;
 }
 
@@ -80,7 +81,7 @@ void read_strength(const Section& section, LightSpec& light) {
 
 void read_place(const Section& section, LightSpec& light) {
     section.exclusive("direction", "look_at");
-    assign(light.position, read_vector3_track(section["position"]));
+    assign(light.position, read_position_track(section["position"]));
     light.look_at = read_target(section["look_at"]);
     assign(light.direction, read_direction_track(section["direction"]));
 }

@@ -11,7 +11,7 @@ namespace {
 
 void read_transform(const Section& scene, SceneSpec& spec) {
     const Section section = scene.section("transform");
-    assign(spec.transform.translate, read_vector3_track(section["translate"]));
+    assign(spec.transform.translate, read_position_track(section["translate"], true));
     assign(spec.transform.rotate, read_rotation_track(section["rotate"]));
     assign(spec.transform.scale, read_scale_track(section["scale"]));
 }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/text.h"
 
@@ -36,6 +38,15 @@ std::string integer_text(const FieldSpec& field) {
     return fmt::format("a whole number from {} to {}", format_number(field.low), format_number(field.high));
 }
 
+/// "a map of radius, height, ..."
+std::string map_text(std::string_view section) {
+    std::vector<std::string> keys;
+    for (const FieldSpec* below : fields_below(section)) {
+        if (below->built) keys.emplace_back(key_of(*below));
+    }
+    return fmt::format("a map of {}", joined(keys, ", "));
+}
+
 std::string components_text(std::string_view shape, const FieldSpec& field) {
     const std::string range = range_text(field);
     return range.empty() ? fmt::format("{}", shape) : fmt::format("{}, each {}", shape, range);
@@ -67,6 +78,9 @@ constexpr FormRow kFormRows[] = {
     {kChoice, choices_text},
     {kNode, [](const FieldSpec&) -> std::string { return "a node such as scene/Node"; }},
     {kKeys, [](const FieldSpec&) -> std::string { return "a map of times to values such as { 0 s: 1, 24 f: 2 }"; }},
+    {kPoints, [](const FieldSpec&) -> std::string { return "a list of points [x, y, z]"; }},
+    {kOrbit, [](const FieldSpec&) { return map_text("orbit"); }},
+    {kShake, [](const FieldSpec&) { return map_text("shake"); }},
     {kSections, [](const FieldSpec&) -> std::string { return "a list of maps"; }},
     {kNamedSections, [](const FieldSpec&) -> std::string { return "a map of names to maps"; }},
 };
@@ -80,13 +94,16 @@ const FieldSpec* find_field(std::string_view path) {
     return nullptr;
 }
 
+bool is_grammar(std::string_view section) {
+    constexpr std::string_view kGrammar[] = {"track", "key", "rotation", "motion", "orbit", "shake"};
+    return std::find(std::begin(kGrammar), std::end(kGrammar), section) != std::end(kGrammar);
+}
+
 std::vector<const FieldSpec*> fields_below(std::string_view section) {
     std::vector<const FieldSpec*> fields;
     for (const FieldSpec& field : schema_table()) {
         const std::string_view path = field.path;
-        const bool grammar =
-            path == "track" || path == "key" || path == "rotation";  // sections of values, not of a shot
-        if (parent_of(path) == section && !(section.empty() && grammar)) fields.push_back(&field);
+        if (parent_of(path) == section && !(section.empty() && is_grammar(path))) fields.push_back(&field);
     }
     return fields;
 }
@@ -133,13 +150,7 @@ std::string expectation(const FieldSpec& field) {
     for (const FormRow& row : kFormRows) {
         if (field.forms & row.form) parts.push_back(row.text(field));
     }
-    if (field.forms & kSection) {
-        std::vector<std::string> keys;
-        for (const FieldSpec* below : fields_below(field.path)) {
-            if (below->built) keys.emplace_back(key_of(*below));
-        }
-        parts.push_back(fmt::format("a map of {}", joined(keys, ", ")));
-    }
+    if (field.forms & kSection) parts.push_back(map_text(field.path));
     if (parts.empty()) return "a value";
     return joined(parts, " or ");
 }

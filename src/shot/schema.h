@@ -30,6 +30,10 @@ enum Form : unsigned {
     kKeys = 1u << 15,      ///< a map of times to values
     kSize2 = 1u << 16,     ///< [width, height], whole numbers
     kNamedSections = 1u << 20,  ///< a map of names to maps, whose keys are the rows below this path
+    kPoints = 1u << 27,    ///< a list of [x, y, z]
+    kMotion = 1u << 28,    ///< a position that may travel: the rows below `motion`
+    kOrbit = 1u << 29,     ///< the rows below `orbit`
+    kShake = 1u << 30,     ///< the rows below `shake`
     kTrack = 1u << 31,     ///< each of the forms may be keyed over time
 };
 
@@ -60,6 +64,9 @@ const FieldSpec* find_field(std::string_view path);
 
 /// Rows directly below a section ("" for the top), in the table's order.
 std::vector<const FieldSpec*> fields_below(std::string_view section);
+
+/// Sections of values wherever a row's forms allow them, not of a shot: track, key, rotation, ...
+bool is_grammar(std::string_view section);
 
 /// Last part of the path.
 std::string_view key_of(const FieldSpec& field);

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "anim/timing.h"
+#include "anim/shake.h"
 #include "anim/track.h"
+#include "anim/transform.h"
 #include "base/error.h"
 
 namespace kadr {
@@ -20,7 +22,7 @@ struct NodeReference {
 };
 
 /// Where a camera or a light looks: a (moving) point, or the origin of a node.
-using Target = std::variant<Track<glm::dvec3>, NodeReference>;
+using Target = std::variant<PositionTrack, NodeReference>;
 
 /// Something that is on (1) or off (0) and only jumps between the two: keys of Interpolation::step.
 using SwitchTrack = Track<double>;
@@ -59,9 +61,13 @@ struct SceneSpec {
 struct CameraSpec {
     SourceLocation where;
     std::optional<NodeReference> gltf;  ///< an authored camera; the fields below (but lens and focus) are unused then
-    Track<glm::dvec3> position{glm::dvec3(0, 0, 5)};
-    Target look_at = Track<glm::dvec3>(glm::dvec3(0));
+    PositionTrack position{glm::dvec3(0, 0, 5)};   ///< relative to `around` where there is one
+    std::optional<NodeReference> around;           ///< the node that position orbits
+    Target look_at = PositionTrack(glm::dvec3(0)); ///< unused where the position turns along a path
     Track<glm::dvec3> up{glm::dvec3(0, 1, 0)};
+    bool up_given = false;                         ///< false: a still camera that looks along +y may choose another
+    std::optional<Track<double>> dolly_m;          ///< forward along the view axis
+    std::optional<Shake> shake;
     std::optional<Track<double>> focal_length_mm;   ///< exclusive with vertical_fov
     std::optional<Track<double>> vertical_fov_rad;  ///< neither given: 50 mm
     glm::dvec2 sensor_mm{36, 24};
@@ -84,7 +90,7 @@ struct LightSpec {
     LightKind kind = LightKind::point;
     Track<double> strength{1.0};
     Track<glm::dvec3> color{glm::dvec3(1)};
-    Track<glm::dvec3> position{glm::dvec3(0)};
+    PositionTrack position{glm::dvec3(0)};
     std::optional<Target> look_at;                                ///< wins over direction
     Track<glm::dvec3> direction{glm::dvec3(0, 0, -1)};            ///< the way the light travels
     Track<double> inner_rad{0.0}, outer_rad{0.7853981633974483};  ///< half-angles

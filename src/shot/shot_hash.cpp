@@ -27,6 +27,7 @@ private:
     void add(const glm::dvec3& v) { (*this)(v.x, v.y, v.z); }
     void add(const glm::dquat& q) { (*this)(q.x, q.y, q.z, q.w); }
     void add(const NodeReference& node) { add(node.text); }
+    void add(const Spin& spin) { (*this)(spin.turns, spin.axis); }
     void add(const Ease& ease) { (*this)(ease[0], ease[1], ease[2], ease[3]); }
     template <class T>
     void add(const std::optional<T>& value) {
@@ -40,14 +41,21 @@ private:
     }
     template <class T>
     void add(const Track<T>& track) {
-        (*this)(track.interpolation, track.keys.size());
-        for (const Key<T>& key : track.keys) (*this)(key.time_s, key.value, key.ease, key.in_tangent, key.out_tangent);
+        (*this)(track.interpolation, track.before, track.after, track.overshoot, track.keys.size());
+        for (const Key<T>& key : track.keys) {
+            (*this)(key.time_s, key.value, key.ease, key.in_tangent, key.out_tangent);
+            if constexpr (kIsRotation<T>) add(key.spin);
+        }
     }
     void add(const ShutterCurve::Key& key) { (*this)(key.fraction, key.efficiency); }
     void add(const Shutter& s) {
         (*this)(s.open_frames, s.close_frames, s.open_s, s.close_s, s.curve.shape, s.curve.keys, s.rolling.direction,
                 s.rolling.duration_s, s.physical);
     }
+    void add(const PathMotion& m) { (*this)(m.path.points(), m.path.closed(), m.at, m.along, m.up); }
+    void add(const OrbitMotion& o) { (*this)(o.around, o.radius_m, o.height_m, o.turns, o.start_rad); }
+    void add(const PositionTrack& p) { (*this)(p.keyed, p.path, p.orbit); }
+    void add(const Shake& s) { (*this)(s.amplitude_m, s.angle_rad, s.frequency_hz, s.seed); }
     void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
@@ -60,7 +68,7 @@ private:
                 m.normal_scale);
     }
     void add(const CameraSpec& c) {
-        (*this)(c.gltf, c.position, c.look_at, c.up, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,
+        (*this)(c.gltf, c.position, c.around, c.look_at, c.up, c.up_given, c.dolly_m, c.shake, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,
                 c.f_stop, c.focus, c.blades);
     }
     void add(const LightSpec& l) {

@@ -1,4 +1,4 @@
-#include "anim/track.h"
+#include "anim/transform.h"
 
 #include <gmock/gmock.h>
 #include <rapidcheck.h>

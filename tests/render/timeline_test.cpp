@@ -77,7 +77,7 @@ cuts: none
 
 TEST(TimelineTest, TellsACutBetweenShuttersAndOneOfAClip) {
     CutStage stage;
-    stage.shot.camera.position.keys[1].time_s = 0.7;  // the shutter of frame 2 closes at 0.625 s
+    stage.shot.camera.position.keyed.keys[1].time_s = 0.7;  // the shutter of frame 2 closes at 0.625 s
     const int node = stage.add_node("Box");
     stage.animate(node).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {0.3, {1, 0, 0}}}, Interpolation::step);
     const std::string text = timeline_text(stage.bind());

@@ -292,7 +292,7 @@ camera: {})"),
          R"(shot.yaml:4:52: error: keys 0 s and 2 s of scenes.0.transform.rotate are 180 deg apart
         transform: { rotate: { keys: { 0 s: [0, 0, 0], 2 s: [0, 180 deg, 0] } } }
                                                        ^~~
-  the way round is undefined; add a key between them, or write { axis: [x, y, z], angle: { keys: ... } })"},
+  the way round is undefined; say it at the first, 0 s: { value: ..., axis: [x, y, z] }, or add a key between them)"},
         {std::string(R"(kadr: 1
 scenes:
   - gltf: a.glb
@@ -347,15 +347,7 @@ camera: { position: { keys: { 0 s: [0, 0, 0], soon: [1, 1, 1] }, interpolate: cu
          R"(shot.yaml:3:47: error: the time of a key of camera.position is 'soon'
     camera: { position: { keys: { 0 s: [0, 0, 0], soon: [1, 1, 1] }, interpolate: cubic, after: repeat } }
                                                   ^~~~
-  expected a time such as 2.5 s, 80 ms, 12 f or a number of seconds
-shot.yaml:3:79: error: camera.position.interpolate: cubic is not supported yet
-    camera: { position: { keys: { 0 s: [0, 0, 0], soon: [1, 1, 1] }, interpolate: cubic, after: repeat } }
-                                                                                  ^~~~~
-  expected one of step, linear, smooth
-shot.yaml:3:93: error: camera.position.after: repeat is not supported yet
-    camera: { position: { keys: { 0 s: [0, 0, 0], soon: [1, 1, 1] }, interpolate: cubic, after: repeat } }
-                                                                                                ^~~~~~
-  expected hold)"},
+  expected a time such as 2.5 s, 80 ms, 12 f or a number of seconds)"},
         {std::string(R"(kadr: 1
 scenes: [ a.glb ]
 camera: { position: { keys: {} } })"),
@@ -389,10 +381,14 @@ shot.yaml:3:34: error: camera.blades is 2
     camera: { up: [0, 0, 0], blades: 2, orbit: {}, look_at: /x, focus: -1 }
                                      ^
   expected 0 for a round aperture, or 3 to 32
-shot.yaml:3:37: error: camera.orbit is not supported yet
+shot.yaml:3:44: error: camera.orbit.radius is missing
     camera: { up: [0, 0, 0], blades: 2, orbit: {}, look_at: /x, focus: -1 }
-                                        ^~~~~
-  orbit is part of the format, but this version of Kadr cannot do it; remove the key
+                                               ^~
+  add `radius: 4 m`
+shot.yaml:3:44: error: camera.orbit.to is missing
+    camera: { up: [0, 0, 0], blades: 2, orbit: {}, look_at: /x, focus: -1 }
+                                               ^~
+  add `to: 4 s`, when the end is reached; or give turns as a track
 shot.yaml:3:57: error: camera.look_at is '/x'
     camera: { up: [0, 0, 0], blades: 2, orbit: {}, look_at: /x, focus: -1 }
                                                             ^~

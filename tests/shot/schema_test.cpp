@@ -30,8 +30,7 @@ TEST(Schema, DescribesEveryKey) {
     const std::string manual = describe_schema("");
     for (const FieldSpec& field : schema_table()) {
         EXPECT_THAT(describe_schema(field.path), HasSubstr(field.doc)) << field.path;
-        const bool heading = std::string_view(field.path) == "track" || std::string_view(field.path) == "key" ||
-                             std::string_view(field.path) == "rotation";
+        const bool heading = is_grammar(field.path);
         EXPECT_TRUE(heading || manual.find(field.doc) != std::string::npos) << field.path;
     }
 }
@@ -90,7 +89,7 @@ TEST(Schema, JsonHasEveryKey) {
     EXPECT_EQ(schema["required"], (nlohmann::json{"kadr", "scenes", "camera"}));
     for (const FieldSpec& field : schema_table()) {
         const std::string path = field.path;
-        const bool grammar = path.starts_with("track") || path.starts_with("key") || path.starts_with("rotation");
+        const bool grammar = is_grammar(path.substr(0, path.find('.')));
         if (grammar || path == "kadr-reel" || path.starts_with("render.samples."))
             continue;  // no values of a shot that can be written
         const nlohmann::json* at = &schema;
@@ -103,6 +102,8 @@ TEST(Schema, JsonHasEveryKey) {
         EXPECT_THAT((*at)["description"].get<std::string>(), HasSubstr(field.doc)) << path;
     }
     EXPECT_TRUE(schema["$defs"]["rotation"]["properties"].contains("axis"));
+    EXPECT_EQ(schema["$defs"]["motion"]["properties"]["orbit"]["$ref"], "#/$defs/orbit");
+    EXPECT_EQ(schema["properties"]["camera"]["properties"]["shake"]["$ref"], "#/$defs/shake");
 }
 
 // Words of the table stand in the order of the enums that they become.

@@ -1,0 +1,62 @@
+#include "anim/extrapolation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadr {
+
+namespace {
+
+/// x in [0, period), exact but for the last addition.
+double wrapped(double x, double period) {
+    double rest = std::fmod(x, period);
+    if (rest < 0) rest += period;
+    return rest < period ? rest : 0;
+}
+
+bool loops(Extrapolation mode) { return mode == Extrapolation::repeat || mode == Extrapolation::pingpong; }
+
+}  // namespace
+
+FoldedTime fold(const KeyedSpan& span, double time_s) {
+    if (time_s >= span.first_s && time_s < span.last_s) return {time_s};
+    const bool after = time_s >= span.last_s;
+    const double end = after ? span.last_s : span.first_s;
+    const double past = time_s - span.first_s;
+    switch (after ? span.after : span.before) {
+        case Extrapolation::hold: return {end};
+        case Extrapolation::continued: return {end, false, time_s - end};
+        case Extrapolation::repeat: return {span.first_s + wrapped(past, span.seconds())};
+        case Extrapolation::pingpong: break;
+    }
+    const double there_and_back = wrapped(past, 2 * span.seconds());
+    if (there_and_back < span.seconds()) return {span.first_s + there_and_back};
+    return {std::min(span.last_s, span.first_s + (2 * span.seconds() - there_and_back)), true};
+}
+
+SpanPasses passes_within(const KeyedSpan& span, double begin_s, double end_s) {
+    double from = std::floor((begin_s - span.first_s) / span.seconds());
+    double to = std::floor((end_s - span.first_s) / span.seconds());
+    if (!loops(span.before)) from = std::max(from, 0.0);
+    if (!loops(span.after)) to = std::min(to, 0.0);
+    return to >= from ? SpanPasses{from, to - from + 1} : SpanPasses{};
+}
+
+SpanPass pass_at(const KeyedSpan& span, double number) {
+    const Extrapolation mode = number < 0 ? span.before : span.after;
+    const bool odd = std::fmod(number, 2) != 0;
+    return {&span, number, odd && mode == Extrapolation::pingpong};
+}
+
+double SpanPass::to_shot(double local_s) const {
+    if (number == 0) return local_s;
+    const double into = mirrored ? span->last_s - local_s : local_s - span->first_s;
+    return span->first_s + (number * span->seconds() + into);
+}
+
+double SpanPass::to_local(double shot_s) const {
+    const double into = std::clamp(shot_s - span->first_s - number * span->seconds(), 0.0, span->seconds());
+    return mirrored ? span->last_s - into : span->first_s + into;
+}
+
+}  // namespace kadr
