@@ -100,16 +100,24 @@ struct SurfaceMaps {
     Vec4<F> color;
 };
 
+/// Tangent of a vertex between two keys; the handedness is the same in all of them.
+SHARED_FN Vec4f tangent_at(const Geometry& g, const VertexKeys& keys, unsigned vertex) {
+    const Vec4f a = g.tangents[keys.first + vertex];
+    if (g.key_count <= 1) return a;
+    const Vec4f b = g.tangents[keys.second + vertex];
+    return {lerp(a.x, b.x, keys.fraction), lerp(a.y, b.y, keys.fraction), lerp(a.z, b.z, keys.fraction), a.w};
+}
+
 /// Attributes that not every mesh has, of one lane.
 template <class F>
-SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const unsigned* index, float u, float v, int i,
-                          SurfaceMaps<F>& maps, Interaction<F>& it) {
+SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const VertexKeys& keys, const unsigned* index, float u,
+                          float v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
     const float w = 1.0f - u - v;
     const unsigned a = index[0], b = index[1], c = index[2];
     set_vec(maps.uv[1], i, g.uv1 ? g.uv1[a] * w + g.uv1[b] * u + g.uv1[c] * v : Vec2f{0, 0});
     Vec4f tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
     if (g.tangents) {
-        const Vec4f ta = g.tangents[a], tb = g.tangents[b], tc = g.tangents[c];
+        const Vec4f ta = tangent_at(g, keys, a), tb = tangent_at(g, keys, b), tc = tangent_at(g, keys, c);
         tangent = {ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v,
                    ta.w};
     }
@@ -144,8 +152,11 @@ SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> 
 template <class F, unsigned R>
 SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo,
                                           Mask<F> active) {
-    constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0;
+    constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0,
+                   kDeformation = (R & requirement::kDeformation) != 0;
     const float* rows[4][kLanes<F>];  // three vertices and the material of every lane
+    [[maybe_unused]] const float* later[3][kLanes<F>];  // the vertices in the following key
+    [[maybe_unused]] F fraction(0.0f);
     AffineLanes<F> world_from_object;
     SurfaceMaps<F> maps;
     Interaction<F> it;
@@ -158,7 +169,13 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
         const Instance& instance = scene.instances[instance_index];
         const Geometry& g = scene.geometries[instance.geometry];
         const unsigned* index = g.indices + 3 * static_cast<unsigned long>(lane(hit.primitive, from));
-        for (int corner = 0; corner < 3; ++corner) rows[corner][i] = &g.vertices[index[corner]].position.x;
+        VertexKeys keys;
+        if constexpr (kDeformation) {
+            keys = vertex_keys(g, lane(time, from));
+            set_lane(fraction, i, keys.fraction);
+            for (int c = 0; c < 3; ++c) later[c][i] = &g.vertices[keys.second + index[c]].position.x;
+        }
+        for (int c = 0; c < 3; ++c) rows[c][i] = &g.vertices[keys.first + index[c]].position.x;
         rows[3][i] = &scene.materials[instance.material].base_color.x;
         if constexpr (kTransforms) {
             const Affine at = transform_at(scene, instance_index, lane(time, from));
@@ -166,10 +183,18 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
         }
         if constexpr (kMaps)
-            fetch_maps(scene.materials[instance.material], g, index, lane(hit.u, from), lane(hit.v, from), i, maps, it);
+            fetch_maps(scene.materials[instance.material], g, keys, index, lane(hit.u, from), lane(hit.v, from), i,
+                       maps, it);
     }
     F corner[3][8], material[8];
     for (int c = 0; c < 3; ++c) load_rows(rows[c], corner[c]);
+    if constexpr (kDeformation) {
+        F end[8];
+        for (int c = 0; c < 3; ++c) {
+            load_rows(later[c], end);
+            for (int k = 0; k < 8; ++k) corner[c][k] = corner[c][k] + (end[k] - corner[c][k]) * fraction;
+        }
+    }
     load_rows(rows[3], material);
     const Vec3<F> p0{corner[0][0], corner[0][1], corner[0][2]}, p1{corner[1][0], corner[1][1], corner[1][2]},
         p2{corner[2][0], corner[2][1], corner[2][2]};

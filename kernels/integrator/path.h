@@ -85,14 +85,41 @@ SHARED_FN float environment_weight(const LightSet& lights) { return lights.map.a
 
 // ------------------------------------------------------------------------------------------------- light that rays hit
 
+/// Twice the area of a triangle in the world at a time of the shutter.
+SHARED_FN float doubled_area_at(const SceneView& scene, unsigned instance, unsigned primitive, float time) {
+    const Geometry& g = scene.geometries[scene.instances[instance].geometry];
+    const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
+    const Affine at = transform_at(scene, instance, time);
+    const VertexKeys keys = vertex_keys(g, time);
+    const Vec3f a = position_at(g, keys, index[0]);
+    const Vec3f edges[2] = {position_at(g, keys, index[1]) - a, position_at(g, keys, index[2]) - a};
+    Vec3f world[2];
+    for (int i = 0; i < 2; ++i)
+        world[i] = {at.m[0][0] * edges[i].x + at.m[0][1] * edges[i].y + at.m[0][2] * edges[i].z,
+                    at.m[1][0] * edges[i].x + at.m[1][1] * edges[i].y + at.m[1][2] * edges[i].z,
+                    at.m[2][0] * edges[i].x + at.m[2][1] * edges[i].y + at.m[2][2] * edges[i].z};
+    const Vec3f n = cross(world[0], world[1]);
+    return sqrt(dot(n, n));
+}
+
 /// Emission of an emissive triangle seen along the path, weighted against having sampled it.
-template <class F>
+template <class F, unsigned R>
 SHARED_FN F emitter_mis(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, const Interaction<F>& it,
                         Mask<F> active) {
     F density(0.0f);
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
         const int i = __builtin_ctz(todo);
-        set_lane(density, i, scene.lights.instance_density[lane(hit.instance, i)]);
+        const unsigned instance = static_cast<unsigned>(lane(hit.instance, i));
+        float per_area = scene.lights.instance_density[instance];
+        if constexpr ((R & requirement::kDeformation) != 0) {
+            // Chosen by the area at the shutter's opening (see stretched_density).
+            if (per_area > 0 && scene.geometries[scene.instances[instance].geometry].key_count > 1) {
+                const unsigned primitive = static_cast<unsigned>(lane(hit.primitive, i));
+                per_area *= doubled_area_at(scene, instance, primitive, 0.0f) /
+                            max(doubled_area_at(scene, instance, primitive, lane(path.time, i)), 1e-30f);
+            }
+        }
+        set_lane(density, i, per_area);
     }
     const Vec3<F> d = it.position - path.origin;
     const F distance2 = dot(d, d);
@@ -166,6 +193,14 @@ SHARED_FN int find_in_cdf(const float* cdf, int count, float u) {
     return low;
 }
 
+/// What a bending triangle's density has to be multiplied with where its area is not that of the shutter's opening: it is
+/// chosen by the area that it had then.
+/// @param doubled_area  cross product of its edges now
+SHARED_FN float stretched_density(const EmissiveTriangle& triangle, Vec3f doubled_area) {
+    const Vec3f then = cross(triangle.edge1, triangle.edge2);
+    return sqrt(dot(then, then) / max(dot(doubled_area, doubled_area), 1e-30f));
+}
+
 /// Replaces what a moving or textured emitter has of its own at (b1, b2).
 SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& triangle, float time, float b1, float b2,
                                Vec3f& point, Vec3f& normal, Vec3f& emission) {
@@ -173,9 +208,10 @@ SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& t
     const Geometry& g = scene.geometries[instance.geometry];
     const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
     const Affine at = transform_at(scene, triangle.instance, time);
+    const VertexKeys keys = vertex_keys(g, time);
     Vec3f corners[3];
     for (int c = 0; c < 3; ++c) {
-        const Vec3f q = g.vertices[index[c]].position;
+        const Vec3f q = position_at(g, keys, index[c]);
         corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3],
                       at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
                       at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
@@ -221,6 +257,8 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
         const int i = __builtin_ctz(todo);
         Vec3f at{}, facing{}, emission = chosen[i]->emission;
         look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i), at, facing, emission);
+        if (scene.geometries[scene.instances[chosen[i]->instance].geometry].key_count > 1)
+            set_lane(second[4], i, lane(second[4], i) * stretched_density(*chosen[i], facing));
         set_vec(point, i, at);
         set_vec(normal, i, facing);
         set_vec(s.radiance, i, emission);
@@ -321,7 +359,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     VertexResult<F> result;
 
     F emission_weight(1.0f);
-    if constexpr ((R & requirement::kEmitters) != 0) emission_weight = emitter_mis(scene, path, hit, it, active);
+    if constexpr ((R & requirement::kEmitters) != 0) emission_weight = emitter_mis<F, R>(scene, path, hit, it, active);
     const UInt<F> total = path.bounces & UInt<F>(0xffu);
     result.emitted = select(
         active, clamp_contribution(settings, total < UInt<F>(2u), it.emission * path.beta * emission_weight), zero);

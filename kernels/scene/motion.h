@@ -61,6 +61,30 @@ SHARED_FN TransformKey interpolate(const TransformKey& a, const TransformKey& b,
     return k;
 }
 
+/// Where a bending mesh is between two of its keys.
+struct VertexKeys {
+    unsigned long first = 0, second = 0;  ///< offsets of the keys' vertices
+    float fraction = 0;
+};
+
+SHARED_FN VertexKeys vertex_keys(const Geometry& g, float time) {
+    if (g.key_count <= 1) return {};
+    const float position = clamp(time, 0.0f, 1.0f) * static_cast<float>(g.key_count - 1);
+    int segment = truncate(position);
+    const int last = static_cast<int>(g.key_count) - 2;
+    if (segment > last) segment = last;
+    const unsigned long first = static_cast<unsigned long>(segment) * g.vertex_count;
+    return {first, first + g.vertex_count, position - static_cast<float>(segment)};
+}
+
+/// Position of a vertex between two keys, in the mesh's coordinates.
+SHARED_FN Vec3f position_at(const Geometry& g, const VertexKeys& keys, unsigned vertex) {
+    const Vec3f a = g.vertices[keys.first + vertex].position;
+    if (g.key_count <= 1) return a;
+    const Vec3f b = g.vertices[keys.second + vertex].position;
+    return {lerp(a.x, b.x, keys.fraction), lerp(a.y, b.y, keys.fraction), lerp(a.z, b.z, keys.fraction)};
+}
+
 /// world_from_object of an instance at a time in [0, 1] of the shutter.
 SHARED_FN Affine transform_at(const SceneView& scene, unsigned instance, float time) {
     const InstanceMotion& motion = scene.motions[instance];

@@ -60,12 +60,14 @@ static_assert(sizeof(Vertex) == 32, "fetched as eight floats");
 /// A triangle mesh in its own coordinates (normalised to order 1 by the loader), or, flattened, relative to the render
 /// origin. Null pointers: attribute absent.
 struct Geometry {
-    const Vertex* vertices;   ///< [vertex_count]
+    const Vertex* vertices;   ///< [key][vertex_count]
     const unsigned* indices;  ///< [3 * triangle_count]
-    const Vec4f* tangents;    ///< [vertex_count] xyz unit, w = +-1 handedness; null unless a normal texture is used
+    const Vec4f* tangents;    ///< [key][vertex_count] xyz unit, w = +-1 handedness; null unless a normal texture is used
     const Vec2f* uv1;         ///< [vertex_count] of set 1
     const Vec4f* colors;      ///< [vertex_count] linear RGBA, multiplies the base colour
     unsigned vertex_count, triangle_count;
+    unsigned key_count;       ///< of a mesh that bends: keys evenly spaced on [0, 1] of the shutter; 0 and 1: rigid
+    const Vec3f* previous;    ///< [vertex_count] positions one frame earlier; null: those of the first key
 };
 
 /// Shading's view of one instance.

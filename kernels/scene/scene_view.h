@@ -39,7 +39,7 @@ struct EmissiveTriangle {
     Vec3f emission;      ///< radiance; of a textured emitter the factor
     float density;       ///< pdf per area of a point on it
     unsigned instance, primitive;
-    unsigned varies;  ///< 1: textured or moving, so that a point of it has to be looked up
+    unsigned varies;  ///< 1: textured, moving or bending, so that a point of it has to be looked up
 };
 static_assert(sizeof(EmissiveTriangle) == 64, "fetched as sixteen floats");
 
@@ -87,6 +87,7 @@ inline constexpr unsigned kMaps = 1;        ///< textures, normal maps, vertex c
 inline constexpr unsigned kTransforms = 2;  ///< instances that are not flattened, moving ones
 inline constexpr unsigned kEmitters =
     4;  ///< lights that rays can hit: MIS with area lights, triangles, environment maps
+inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shutter is open
 inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters;
 }  // namespace requirement
 

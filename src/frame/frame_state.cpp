@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "frame/bindings.h"
+#include "frame/deform.h"
 #include "frame/problem.h"
 
 namespace kadr {
@@ -98,7 +99,8 @@ std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig, const
     for (std::size_t node = 0; node < scene.nodes.size(); ++node)
         for (const MeshPrimitive& primitive : scene.nodes[node].primitives) {
             const int material = materials.material_of(rig.file_of(static_cast<int>(node)), primitive);
-            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(material), id++};
+            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(material), id++,
+                                    static_cast<int>(node)};
             if (rig.reachable(seed.node)) seeds.push_back(seed);
         }
     return seeds;
@@ -146,6 +148,19 @@ glm::dvec3 Bindings::position_of(const NodeReference& reference, double time_s) 
     return glm::dvec3((at.node < 0 ? rig.scene_transform(at.file, time_s) : rig.node_transform(at.node, time_s))[3]);
 }
 
+const InstanceSeed& Bindings::seed_of(std::uint32_t id) const {
+    return *std::lower_bound(seeds.begin(), seeds.end(), id, [](const InstanceSeed& seed, std::uint32_t wanted) { return seed.id < wanted; });
+}
+
+glm::dmat4 Bindings::node_from_geometry(const Scene& scene, const InstanceSeed& seed) const {
+    const GeometryData& geometry = scene.geometries[seed.geometry];
+    const bool bends = seed.deformer >= 0;
+    const Deformer* deformer = bends ? &deformers[static_cast<std::size_t>(seed.deformer)] : nullptr;
+    glm::dmat4 m(bends ? deformer->scale : geometry.scale);
+    m[3] = glm::dvec4(bends ? deformer->centre : geometry.centre, 1);
+    return m;
+}
+
 BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene_(&scene), sequence_({}, {}) {
     std::vector<Diagnostic> problems;
     std::vector<std::vector<int>> clips(scene.files.size());
@@ -163,10 +178,11 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     if (!problems.empty()) throw InputError(std::move(problems));
 
     sequence_ = Sequence(timing_, shot.shutter);
-    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node, PropertyRig(shot, scene, clips), {}, {}});
+    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node, PropertyRig(shot, scene, clips), {}, {}, MorphRig(shot, scene, clips), {}});
     bindings->visibility = VisibilityRig(shot, scene, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
+    bind_deformers(*this, *bindings);
     if (shot.use_scene_lights) bindings->light_nodes = light_nodes_of(scene, bindings->rig);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);

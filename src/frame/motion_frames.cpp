@@ -56,12 +56,6 @@ struct Interval {
     }
 };
 
-glm::dmat4 node_from_geometry(const GeometryData& geometry) {
-    glm::dmat4 m(geometry.scale);
-    m[3] = glm::dvec4(geometry.centre, 1);
-    return m;
-}
-
 glm::dmat4 relative(glm::dmat4 world, const glm::dvec3& origin) {
     for (int i = 0; i < 3; ++i) world[3][i] -= origin[i];
     return world;
@@ -188,7 +182,6 @@ public:
     }
 
 private:
-    const GeometryData& geometry_of(std::size_t i) const { return scene_.geometries[seeds_[i].geometry]; }
 
     void refuse(std::size_t i, std::string_view what, std::string expected) {
         const int file = rig_.file_of(seeds_[i].node);
@@ -225,7 +218,7 @@ private:
     }
 
     void place_still(std::size_t i, const glm::dmat4& world) {
-        const glm::dmat4 place = relative(world * node_from_geometry(geometry_of(i)), interval_.origin);
+        const glm::dmat4 place = relative(world * interval_.shot.bindings().node_from_geometry(scene_, seeds_[i]), interval_.origin);
         const Decomposition parts = decompose(place);
         if (!is_finite(place)) return refuse_infinite(i);
         batch_.fitted[i].hidden = is_singular(parts);
@@ -256,7 +249,7 @@ private:
         }
         for (const std::size_t i : members) {
             const auto slot = static_cast<std::size_t>(selection.slot_of(seeds_[i].node));
-            const glm::dmat4 local = node_from_geometry(geometry_of(i));
+            const glm::dmat4 local = interval_.shot.bindings().node_from_geometry(scene_, seeds_[i]);
             std::vector<glm::dmat4> places;
             places.reserve(worlds.size());
             for (const auto& world : worlds) places.push_back(relative(world[slot] * local, interval_.origin));
@@ -276,7 +269,8 @@ private:
         if (!fit.open_up())
             return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
                           "expected scales that keep their sign; use a step key to mirror an object");
-        const double enough = kMargin * interval_.tolerance_px;
+        // Where vertices bend as well, both share the tolerance.
+        const double enough = kMargin * interval_.tolerance_px * (seeds_[i].deformer >= 0 ? 1 - kDeformationShare : 1);
         const bool last = 2 * segments > kMostSegments;
         const double step = fit.widest_step();
         const double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
@@ -324,7 +318,7 @@ void add_instance(const BoundShot& shot, const InstanceSeed& seed, const Decompo
     const NodeRig& rig = shot.bindings().rig;
     instance.fixed = !rig.moves(seed.node);
     // Not by way of the origin where there is a better way: subtracting and adding it again costs digits.
-    instance.world_from_geometry = instance.fixed ? rig.node_transform(seed.node, 0) * node_from_geometry(shot.scene().geometries[seed.geometry])
+    instance.world_from_geometry = instance.fixed ? rig.node_transform(seed.node, 0) * shot.bindings().node_from_geometry(shot.scene(), seed)
                                                   : absolute(compose(first), snapshot.render_origin);
     snapshot.instances.push_back(instance);
 }

@@ -26,6 +26,7 @@ public:
 
     glm::dmat4 scene_transform(int file, double time_s) const;  ///< world_from_scene
     glm::dmat4 node_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< world_from_node
+    glm::dmat4 local_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< parent_from_node
     std::vector<glm::dmat4> all_transforms(double time_s, double clip_offset_s = 0) const;
 
     /// Some nodes and their moving ancestors, parents first.
@@ -74,7 +75,6 @@ private:
     void bind_clips(const std::vector<std::vector<int>>& clips);
     void bind_channels(const NodeChannels& channels);
     bool animates(int node) const;  ///< whether a clip changes its own transform over time
-    glm::dmat4 local_transform(int node, double time_s, double clip_offset_s) const;
     Activity own_activity(int node, double begin_s, double end_s, double clip_offset_s) const;
 
     const Scene* scene_;

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
+#include "frame/deform.h"
 #include "frame/light_keys.h"
 #include "frame/motion_frames.h"
 #include "frame/problem.h"
@@ -51,7 +52,7 @@ std::vector<double> environment_discontinuities(const EnvironmentSpec& environme
 
 std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
     std::vector<double> all;
-    for (const std::vector<double>& times : {shot.bindings().rig.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
+    for (const std::vector<double>& times : {shot.bindings().rig.discontinuities(begin_s, end_s), shot.bindings().morphs.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
                                              light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
                                              shot.bindings().visibility.discontinuities(begin_s, end_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
         all.insert(all.end(), times.begin(), times.end());
@@ -105,7 +106,7 @@ void hide_instances(const BoundShot& shot, double time_s, std::vector<SnapshotIn
     if (bindings.visibility.idle()) return;
     const VisibilityRig::States states = bindings.visibility.at(time_s);
     for (std::size_t i = 0; i < instances.size(); ++i)
-        if (!states.visible(bindings.seeds[i].node)) instances[i].mask = 0;
+        if (!states.visible(bindings.seed_of(instances[i].id).mesh_node)) instances[i].mask = 0;
 }
 
 unsigned mixed_seed(std::uint32_t seed, int frame) {
@@ -150,7 +151,7 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
     std::vector<std::uint32_t> integers;
     std::vector<double> places;
     for (const SnapshotInstance& instance : snapshot.instances) {
-        integers.insert(integers.end(), {instance.geometry, instance.material, instance.id, instance.mask, instance.fixed ? 1u : 0u});
+        integers.insert(integers.end(), {instance.geometry, instance.material, instance.id, instance.mask, instance.fixed ? 1u : 0u, static_cast<std::uint32_t>(instance.deformed)});
         const double* first = &instance.world_from_geometry[0][0];
         if (instance.fixed) places.insert(places.end(), first, first + 16);
     }
@@ -160,6 +161,7 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
     add_bytes(hasher, snapshot.motion.srt);
     add_bytes(hasher, snapshot.motion.matrices);
     add_bytes(hasher, snapshot.motion.linear);
+    for (const auto& mesh : snapshot.deformed) hasher.add(static_cast<std::int64_t>(mesh->version));
     for (int i = 0; i < 3; ++i) hasher.add(snapshot.render_origin[i]);
     return hasher.finish().low;
 }
@@ -177,10 +179,10 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
     const std::vector<glm::dmat4> nodes = shot.node_transforms(time_s);
     PreviousPlaces places;
     for (const SnapshotInstance& instance : snapshot.instances) {
-        const GeometryData& geometry = shot.scene().geometries[instance.geometry];
-        const glm::dmat4& world_from_node = nodes[static_cast<std::size_t>(shot.bindings().seeds[instance.id].node)];
-        places.world_from_geometry.push_back(glm::scale(glm::translate(world_from_node, geometry.centre), glm::dvec3(geometry.scale)));
+        const InstanceSeed& seed = shot.bindings().seed_of(instance.id);
+        places.world_from_geometry.push_back(nodes[static_cast<std::size_t>(seed.node)] * shot.bindings().node_from_geometry(shot.scene(), seed));
     }
+    places.deformed = deformed_positions(shot, snapshot, time_s);
     places.camera = make_camera_keys(shot, time_s, time_s, snapshot.render_origin).front();
     return places;
 }
@@ -207,6 +209,7 @@ private:
         const double middle_s = 0.5 * (inside.open_s + inside.close_s);
         if (depth < kDeepestChange && inside.close_s > inside.open_s && shot_.bindings().materials.changes_fast(inside.open_s, inside.close_s)) return add_halves(part, depth);
         if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
+        add_deformed(shot_, inside.open_s, inside.close_s, snapshot);
         hide_instances(shot_, middle_s, snapshot.instances);
         snapshot.materials = shot_.bindings().materials.table(middle_s);
         snapshot.frame_number = frame_.number;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,10 +27,24 @@ struct MotionFrames {
     double max_error_px = 0;                        ///< largest screen-space deviation from the true path
 };
 
+/// A mesh that bends, over the part of the shutter: its vertices at evenly spaced times of [0, 1], in the normalised
+/// coordinates that world_from_geometry of its instances speaks of. Triangles, texture coordinates and colours are those
+/// of its geometry. Never changes once made, so snapshots and devices share it.
+struct DeformedMesh {
+    std::uint32_t geometry = 0;              ///< index into Scene::geometries
+    std::uint32_t deformer = 0;              ///< stable over the shot: equal numbers are the same mesh
+    std::uint32_t key_count = 1;             ///< one: it keeps its shape
+    std::vector<kernels::Vertex> vertices;   ///< [key][vertex]
+    std::vector<kernels::Vec4f> tangents;    ///< [key][vertex]; empty where the geometry has none
+    std::uint64_t version = 0;               ///< equal for equal vertices of one deformer
+    double error_px = 0;                     ///< largest deviation of the linear way between keys from the true one
+};
+
 struct SnapshotInstance {
     std::uint32_t geometry = 0, material = 0;  ///< indices into Scene
     std::uint32_t id = 0;                      ///< stable over the shot
     std::uint32_t mask = 0xffffffffu;
+    int deformed = -1;    ///< index into SceneSnapshot::deformed; -1: rigid
     bool fixed = false;   ///< the same place in the world in every frame of the shot: a device may flatten it
     /// world_from_geometry at the shutter's opening, double, absolute; what a flattening device bakes (after
     /// subtracting the render origin).
@@ -52,6 +67,7 @@ struct EnvironmentSnapshot {
 struct PreviousPlaces {
     std::vector<glm::dmat4> world_from_geometry;   ///< [instance], absolute
     kernels::CameraKey camera{};                   ///< relative to the render origin of the snapshot that holds it
+    std::vector<std::vector<kernels::Vec3f>> deformed;  ///< [deformed mesh][vertex]
 };
 
 /// What any device needs of one frame, or of one part of its shutter, and nothing else: float, relative to the render
@@ -67,6 +83,7 @@ struct SceneSnapshot {
     /// The whole table [material] that replaces the scene's in this part; empty: the scene's own. Entries beyond the
     /// scene's are copies that single entries of the shot have changed.
     std::vector<kernels::Material> materials;
+    std::vector<std::shared_ptr<const DeformedMesh>> deformed;
     std::vector<kernels::CameraKey> camera_keys;
     kernels::Camera camera{};                  ///< keys pointer is null here; the device points it at its own copy
     std::vector<LightKeys> lights;

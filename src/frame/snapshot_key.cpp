@@ -29,6 +29,7 @@ private:
     void add(const kernels::Vec3f& v) { (*this)(v.x, v.y, v.z); }
     void add(const std::vector<kernels::CameraKey>& keys) { bytes(keys); }
     void add(const std::vector<glm::dmat4>& matrices) { bytes(matrices); }
+    void add(const std::vector<kernels::Vec3f>& positions) { bytes(positions); }
     void add(const LightKeys& light) { (*this)(light.first, light.count); }
     void add(const kernels::CameraKey& key) { hasher_.add(std::string_view(reinterpret_cast<const char*>(&key), sizeof key)); }
     void add(const kernels::Light& light) {
@@ -54,8 +55,8 @@ private:
         (*this)(radiance, image ? image->string() : std::string(), rotate_rad, visible);
     }
     void add(const PreviousPlaces& previous) {
-        const auto& [places, camera] = previous;
-        (*this)(places, camera);
+        const auto& [places, camera, deformed] = previous;
+        (*this)(places, camera, deformed);
     }
     void add(const kernels::Settings& settings) {
         const auto& [integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, transparent] = settings;
@@ -67,8 +68,8 @@ private:
         if (!plain) hasher_.add(std::string_view(reinterpret_cast<const char*>(passed), sizeof passed));
     }
     void add(const SceneSnapshot& part) {
-        // Instances and motion by geometry_key, which is made of them.
-        [[maybe_unused]] const auto& [frame, open_s, close_s, weight, shutter, origin, instances, motion, materials, camera_keys, camera, lights,
+        // Instances, motion and bent vertices by geometry_key, which is made of them.
+        [[maybe_unused]] const auto& [frame, open_s, close_s, weight, shutter, origin, instances, motion, materials, deformed, camera_keys, camera, lights,
                                       light_keys, environment, previous, settings, geometry_key] = part;
         (*this)(weight, shutter, origin, materials, camera_keys, camera, lights, light_keys, environment, previous, settings, geometry_key);
     }

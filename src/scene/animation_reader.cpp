@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "scene/accessor.h"
+#include "scene/deformation_reader.h"
 
 namespace kadr {
 
@@ -31,11 +32,13 @@ public:
         : document_(document), sampler_(document.model().animations[animation].samplers[sampler]),
           pointer_(fmt::format("/animations/{}/samplers/{}", animation, sampler)) {}
 
-    Samples read(int components) const {
+    /// @param components  of an element of the output
+    /// @param per_key     elements for each key: the number of morph targets, else 1
+    Samples read(int components, std::size_t per_key = 1) const {
         Samples samples;
         samples.interpolation = interpolation_of(sampler_.interpolation);
         samples.times = read_times();
-        samples.values = read_values(components, samples);
+        samples.values = read_values(components, per_key, samples);
         return samples;
     }
 
@@ -55,14 +58,15 @@ private:
         return times;
     }
 
-    std::vector<float> read_values(int components, const Samples& samples) const {
+    std::vector<float> read_values(int components, std::size_t per_key, const Samples& samples) const {
         const tinygltf::Accessor& output = accessor(sampler_.output);
-        const int expected_type = components == 4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+        const int expected_type = components == 4 ? TINYGLTF_TYPE_VEC4 : components == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_SCALAR;
         const bool number = output.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
                             (output.normalized && output.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
         if (output.type != expected_type || !number)
-            document_.fail(pointer_ + "/output", "is " + describe_accessor(output), fmt::format("expected VEC{} of float or of normalized integers", components));
-        const std::size_t keys = samples.times.size(), expected = samples.interpolation == Interpolation::cubic ? 3 * keys : keys;
+            document_.fail(pointer_ + "/output", "is " + describe_accessor(output),
+                           components == 1 ? "expected SCALAR of float or of normalized integers" : fmt::format("expected VEC{} of float or of normalized integers", components));
+        const std::size_t keys = samples.times.size(), expected = per_key * (samples.interpolation == Interpolation::cubic ? 3 * keys : keys);
         if (output.count != expected)
             document_.fail(pointer_ + "/output", fmt::format("has {} elements for {} times", output.count, keys), fmt::format("expected {}", expected));
         std::vector<float> values = read_floats(document_, sampler_.output);
@@ -97,6 +101,27 @@ Track<T> make_track(const Samples& samples, std::size_t components) {
         track.keys.push_back(std::move(key));
     }
     return track;
+}
+
+/// Weights of `count` morph targets: key after key, and within a cubic key in-tangents, values, out-tangents (3.11).
+std::vector<Track<double>> weight_tracks(const Samples& samples, std::size_t count) {
+    const bool cubic = samples.interpolation == Interpolation::cubic;
+    std::vector<Track<double>> tracks(count);
+    for (std::size_t target = 0; target < count; ++target) {
+        tracks[target].interpolation = samples.interpolation;
+        for (std::size_t i = 0; i < samples.times.size(); ++i) {
+            const float* values = &samples.values[i * count * (cubic ? 3 : 1) + target];
+            Key<double> key;
+            key.time_s = samples.times[i];
+            key.value = values[cubic ? count : 0];
+            if (cubic) {
+                key.in_tangent = values[0];
+                key.out_tangent = values[2 * count];
+            }
+            tracks[target].keys.push_back(std::move(key));
+        }
+    }
+    return tracks;
 }
 
 class AnimationReader {
@@ -140,11 +165,28 @@ private:
         if (static_cast<std::size_t>(channel.sampler) >= source_.samplers.size())
             document_.fail(pointer(i) + "/sampler", fmt::format("is {}", channel.sampler), fmt::format("expected an index into the animation's {} samplers", source_.samplers.size()));
         if (path == "pointer") return warn_of_pointer(i);
-        if (path == "weights") return warn(i, "animates morph weights of a node without morph targets");
-        if (path != "translation" && path != "rotation" && path != "scale")
+        if (path != "weights" && path != "translation" && path != "rotation" && path != "scale")
             document_.fail(pointer(i) + "/target/path", fmt::format("is \"{}\"", path.substr(0, 60)), "expected one of: translation rotation scale weights");
         if (channel.target_node < 0) return warn(i, "names no node");
+        if (path == "weights") return add_weights(i, channel);
         add(i, channel);
+    }
+
+    void add_weights(std::size_t i, const tinygltf::AnimationChannel& channel) {
+        const int mesh = document_.model().nodes[static_cast<std::size_t>(channel.target_node)].mesh;
+        const std::size_t count = mesh < 0 ? 0 : target_count(document_.model().meshes[static_cast<std::size_t>(mesh)]);
+        if (count == 0) return warn(i, "animates morph weights of a node without morph targets");
+        NodeChannels& node = channels_of(channel.target_node);
+        if (!node.weights.empty())
+            document_.fail(pointer(i) + "/target", fmt::format("animates weights of node {} again", channel.target_node), "expected one channel for each property");
+        const Samples samples = SamplerReader(document_, index_, static_cast<std::size_t>(channel.sampler)).read(1, count);
+        extend(samples);
+        node.weights = weight_tracks(samples, count);
+    }
+
+    void extend(const Samples& samples) {
+        clip_.begin_s = std::min<double>(clip_.begin_s, samples.times.front());
+        clip_.end_s = std::max<double>(clip_.end_s, samples.times.back());
     }
 
     void add(std::size_t i, const tinygltf::AnimationChannel& channel) {
@@ -156,8 +198,7 @@ private:
         if (taken)
             document_.fail(pointer(i) + "/target", fmt::format("animates {} of node {} again", channel.target_path, channel.target_node), "expected one channel for each property");
         const Samples samples = SamplerReader(document_, index_, static_cast<std::size_t>(channel.sampler)).read(rotation ? 4 : 3);
-        clip_.begin_s = std::min<double>(clip_.begin_s, samples.times.front());
-        clip_.end_s = std::max<double>(clip_.end_s, samples.times.back());
+        extend(samples);
         if (rotation) node.rotation = rotation_track(i, samples);
         else if (channel.target_path == "scale") node.scale = make_track<glm::dvec3>(samples, 3);
         else node.translation = make_track<glm::dvec3>(samples, 3);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "scene/accessor.h"
+#include "scene/deformation_reader.h"
 #include "scene/tangents.h"
 
 namespace kadr {
@@ -66,7 +67,11 @@ public:
         read_colors();
         repair_normals();
         normalise_positions();
+        VertexSource vertices{pointer_, g.positions.size(), {}};
+        if (g.normals.empty() && normal_uv_set >= 0) vertices.source = g.indices;  // tangents of flat meshes unshare the vertices
         build_tangents(normal_uv_set);
+        g.skin = read_skin_weights(document_, primitive_, vertices, result_.warnings);
+        g.targets = read_morph_targets(document_, primitive_, vertices, g.scale, result_.warnings);
         return std::move(result_);
     }
 

@@ -260,17 +260,8 @@ void GltfDocument::check_features() const {
     };
     const Json& nodes = items(json_, "nodes");
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (contains(nodes[i], "skin") && contains(nodes[i], "mesh"))
-            refuse(fmt::format("/nodes/{}/skin", i), "skinning (skins)", "export the mesh without its armature");
         if (has_extension(nodes[i], "EXT_mesh_gpu_instancing"))
             refuse(fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing", i), "GPU instancing (EXT_mesh_gpu_instancing)", "export the instances as nodes");
-    }
-    const Json& meshes = items(json_, "meshes");
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const Json& primitives = items(meshes[m], "primitives");
-        for (std::size_t p = 0; p < primitives.size(); ++p)
-            if (!items(primitives[p], "targets").empty())
-                refuse(fmt::format("/meshes/{}/primitives/{}/targets", m, p), "morph targets", "export the mesh without shape keys");
     }
 }
 
@@ -306,6 +297,7 @@ void GltfDocument::load_model() {
     same("samplers", model_.samplers.size());
     same("cameras", model_.cameras.size());
     same("scenes", model_.scenes.size());
+    same("skins", model_.skins.size());
     same("animations", model_.animations.size());
     each_primitive(json_, [&](std::size_t m, std::size_t p, const Json& primitive) {
         model_.meshes[m].primitives.at(p).indices = static_cast<int>(unsigned_or(primitive, "indices", static_cast<std::size_t>(-1)));

@@ -152,6 +152,7 @@ constexpr Property kProperties[] = {
 
     {"mesh", "name", Type::string},
     {"mesh", "primitives", Type::objects, "primitive", kRequired},
+    {"mesh", "weights", Type::numbers},
     {"primitive", "attributes", Type::index_map, "accessors", kRequired},
     {"primitive", "indices", Type::index, "accessors"},
     {"primitive", "material", Type::index, "materials"},
@@ -172,6 +173,7 @@ constexpr Property kProperties[] = {
     {"node", "rotation", Type::numbers, {}, kOptional, -kInfinity, kInfinity, 4},
     {"node", "scale", Type::numbers, {}, kOptional, -kInfinity, kInfinity, 3},
     {"node", "translation", Type::numbers, {}, kOptional, -kInfinity, kInfinity, 3},
+    {"node", "weights", Type::numbers},
     {"node", "extensions", Type::object, "node_extensions"},
     {"node_extensions", "KHR_lights_punctual", Type::object, "light_use"},
     {"light_use", "light", Type::index, "lights", kRequired},
@@ -195,6 +197,7 @@ constexpr Property kProperties[] = {
     {"scene", "name", Type::string},
     {"scene", "nodes", Type::indices, "nodes"},
 
+    {"skin", "name", Type::string},
     {"skin", "inverseBindMatrices", Type::index, "accessors"},
     {"skin", "skeleton", Type::index, "nodes"},
     {"skin", "joints", Type::indices, "nodes", kRequired},

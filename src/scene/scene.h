@@ -18,6 +18,19 @@
 
 namespace kadr {
 
+/// How much each joint of a skin carries each vertex. Unused slots weigh 0 and come last.
+struct SkinWeights {
+    int per_vertex = 0;                  ///< slots; 0: the primitive has no joints
+    std::vector<std::uint16_t> joints;   ///< [vertex][slot] positions in Skin::joints
+    std::vector<float> weights;          ///< [vertex][slot] at least 0, summing to 1
+};
+
+/// One morph target: what it adds to the vertices that it moves, in the geometry's normalised units.
+struct MorphTarget {
+    std::vector<std::uint32_t> vertices;                        ///< ascending; those with any difference
+    std::vector<kernels::Vec3f> positions, normals, tangents;   ///< parallel to vertices; empty: no differences
+};
+
 /// One glTF primitive as triangles, in normalised coordinates: mesh position = centre + scale * position, with
 /// positions in [-1, 1]. Node transforms apply to mesh positions, so
 /// world_from_geometry = world_from_node * translate(centre) * scale(scale).
@@ -28,6 +41,8 @@ struct GeometryData {
     std::vector<kernels::Vec4f> tangents;
     std::array<std::vector<kernels::Vec2f>, 2> uv;
     std::vector<kernels::Vec4f> colors;
+    SkinWeights skin;
+    std::vector<MorphTarget> targets;
     glm::dvec3 centre{0};
     double scale = 1;
 };
@@ -102,6 +117,16 @@ struct Node {
     std::vector<MeshPrimitive> primitives;
     int light = -1, camera = -1; ///< indices into Scene::lights, Scene::cameras
     bool visible = true;         ///< KHR_node_visibility: false hides the node and all below it
+    int skin = -1;               ///< index into Scene::skins: the mesh follows its joints, not this node
+    std::vector<double> weights; ///< of the mesh's morph targets, as many as it has
+};
+
+/// The joints that carry a mesh.
+struct Skin {
+    std::string name;
+    std::vector<int> joints;                ///< indices into Scene::nodes
+    std::vector<glm::dmat4> inverse_bind;   ///< [joint] joint_from_mesh at rest
+    int root = -1;                          ///< the node nearest to the joints that is above them all, or one of them
 };
 
 /// One animated node of a clip. Absent tracks leave the node's own value.
@@ -109,6 +134,7 @@ struct NodeChannels {
     int node = -1;
     std::optional<Track<glm::dvec3>> translation, scale;
     std::optional<Track<glm::dquat>> rotation;
+    std::vector<Track<double>> weights;  ///< [morph target], all with the same keys; empty: not animated
 };
 
 struct Clip {
@@ -141,6 +167,7 @@ struct Scene {
     std::vector<TextureData> textures;   ///< one per (image, colour space, sampler)
     std::vector<SceneLight> lights;
     std::vector<SceneCamera> cameras;
+    std::vector<Skin> skins;
     std::vector<Clip> clips;
     std::vector<Diagnostic> warnings;
 };

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "scene/animation_reader.h"
+#include "scene/deformation_reader.h"
 #include "scene/geometry_builder.h"
 #include "scene/gltf_document.h"
 #include "scene/material_reader.h"
@@ -21,6 +22,7 @@ namespace {
 
 /// Memory of one vertex with everything, for the estimate of what a file would need.
 constexpr std::uint64_t kVertexBytes = sizeof(float) * (3 + 3 + 4 + 2 + 2 + 4);
+constexpr std::uint64_t kTargetBytes = sizeof(float) * 3 * 3 + 4;  // of one vertex of a morph target
 constexpr std::uint64_t kAlwaysAllowed = 1ull << 30;   // bytes
 constexpr std::uint64_t kLargestGrowth = 64;           // bytes of geometry per byte of file: shared accessors multiply
 constexpr std::uint64_t kMostVertices = 1ull << 31;
@@ -28,6 +30,7 @@ constexpr std::uint64_t kMostVertices = 1ull << 31;
 /// What makes two primitives the same geometry.
 struct GeometryKey {
     std::map<std::string, int> attributes;
+    std::vector<std::map<std::string, int>> targets;
     int indices, mode, normal_uv_set;
     auto operator<=>(const GeometryKey&) const = default;
 };
@@ -39,14 +42,17 @@ public:
 
     Scene load(const LoadOptions& options) {
         scene_.nodes = read_nodes(document_);
-        const std::vector<int> roots = read_roots(document_, scene_.nodes);
+        std::vector<int> file_roots = read_roots(document_, scene_.nodes);
         scene_.lights = read_lights(document_);
         scene_.cameras = read_cameras(document_);
+        scene_.skins = read_skins(document_, scene_.nodes);
+        read_morph_weights(document_, scene_.nodes);
         scene_.clips = read_animations(document_);
         collect_primitives();
         check_growth();
         build_geometries();
         attach_primitives();
+        const std::vector<int> roots = add_missing_roots(std::move(file_roots));
         scene_.textures = textures_.load(options.decode_textures);
         scene_.warnings = std::move(document_.warnings);
         SceneFile file;
@@ -84,7 +90,7 @@ private:
         const tinygltf::Primitive& primitive = source(mesh, index);
         std::vector<VariantMapping> variants = read_variant_mappings(document_, mesh, index);
         const int uv_set = tangent_uv_set(mesh, index, variants);
-        const GeometryKey key{primitive.attributes, primitive.indices, primitive.mode, uv_set};
+        const GeometryKey key{primitive.attributes, primitive.targets, primitive.indices, primitive.mode, uv_set};
         const auto [place, added] = known.try_emplace(key, static_cast<int>(built_from_.size()));
         if (added) built_from_.push_back({{mesh, index}, uv_set});
         of_mesh_[mesh].push_back(static_cast<int>(primitives_.size()));
@@ -114,7 +120,7 @@ private:
             const std::uint64_t count = count_of(position->second);
             const std::uint64_t order = primitive.indices >= 0 ? count_of(primitive.indices) : count;
             vertices += count;
-            bytes += count * kVertexBytes + order * (primitive.mode > TINYGLTF_MODE_TRIANGLES ? 16 : 4);
+            bytes += count * (kVertexBytes + primitive.targets.size() * kTargetBytes) + order * (primitive.mode > TINYGLTF_MODE_TRIANGLES ? 16 : 4);
         }
         if (vertices >= kMostVertices || (bytes > kAlwaysAllowed && bytes / kLargestGrowth > document_.total_bytes()))
             document_.fail("/meshes", fmt::format("need {} vertices, {} MiB, from a file of {} bytes", vertices, bytes >> 20, document_.total_bytes()),
@@ -150,6 +156,7 @@ private:
                 const Primitive& primitive = primitives_[static_cast<std::size_t>(p)];
                 const int geometry = geometry_of_[static_cast<std::size_t>(primitive.geometry)];
                 if (geometry >= 0) scene_.nodes[i].primitives.push_back(attached(primitive, geometry));
+                if (geometry >= 0) check_skin(i, primitive, scene_.geometries[static_cast<std::size_t>(geometry)].skin);
             }
         }
     }
@@ -161,6 +168,38 @@ private:
             for (const int variant : mapping.variants) result.variants.push_back({variant, material});
         }
         return result;
+    }
+
+    /// Gives skins whose joints belong to several trees a root: a node of its own that stands where the scene does.
+    std::vector<int> add_missing_roots(std::vector<int> roots) {
+        int added = -1;
+        for (Skin& skin : scene_.skins) {
+            if (skin.root >= 0) continue;
+            if (added < 0) {
+                added = static_cast<int>(scene_.nodes.size());
+                scene_.nodes.emplace_back();
+                roots.push_back(added);
+            }
+            skin.root = added;
+        }
+        return roots;
+    }
+
+    /// A node's skin and its mesh meet here alone: whether the joints that vertices name exist.
+    void check_skin(std::size_t node, const Primitive& primitive, const SkinWeights& weights) {
+        const int skin = document_.model().nodes[node].skin;
+        if (skin < 0) return;
+        scene_.nodes[node].skin = skin;
+        const std::string pointer = fmt::format("/meshes/{}/primitives/{}/attributes", primitive.mesh, primitive.index);
+        if (weights.per_vertex == 0) {
+            document_.warnings.push_back(document_.warning(pointer, fmt::format("has no JOINTS_0, but node {} has a skin; the primitive stays at its node", node)));
+            return;
+        }
+        const std::size_t joints = scene_.skins[static_cast<std::size_t>(skin)].joints.size();
+        for (std::size_t i = 0; i < weights.joints.size(); ++i)
+            if (weights.weights[i] > 0 && weights.joints[i] >= joints)
+                document_.fail(pointer + "/JOINTS_0", fmt::format("names joint {}, skin {} of node {} has {}", weights.joints[i], skin, node, joints),
+                               fmt::format("expected joints 0 to {}", joints - 1));
     }
 
     /// Materials are read when first used, so that textures of unused ones are not decoded.
@@ -257,7 +296,13 @@ void append_tree(Scene& scene, const Scene& file, const Offsets& offsets, const 
         }
         node.light = shifted(node.light, offsets.light);
         node.camera = shifted(node.camera, offsets.camera);
+        node.skin = shifted(node.skin, static_cast<int>(scene.skins.size()));
         scene.nodes.push_back(std::move(node));
+    }
+    for (Skin skin : file.skins) {
+        for (int& joint : skin.joints) joint += entry.first_node;
+        skin.root += entry.first_node;
+        scene.skins.push_back(std::move(skin));
     }
     for (Clip clip : file.clips) {
         for (NodeChannels& channels : clip.channels) channels.node += entry.first_node;

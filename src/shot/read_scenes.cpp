@@ -87,6 +87,7 @@ SceneSpec read_scene(const Section& shot, const Field& list, const YamlNode& nod
     const Section section(shot.context(), &node, "scenes", entry_name("scenes", node, index));
     read_id(section["id"], spec);
     read_gltf(section["gltf"], spec);
+    assign(spec.skinning, read_choice<Skinning>(section["skinning"]));
     read_transform(section, spec);
     read_animation(section, spec);
     read_appearance(section, spec);

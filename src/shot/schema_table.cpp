@@ -28,6 +28,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "scenes", .forms = kSections, .doc = "glTF files of the shot", .example = "scenes: [ { id: helmet, gltf: assets/helmet.glb } ]", .required = true},
     {.path = "scenes.id", .forms = kText, .fallback = "the glTF file's name without its ending", .doc = "how the rest of the shot calls this scene", .example = "id: helmet"},
     {.path = "scenes.gltf", .forms = kPath, .doc = "a .gltf or .glb file", .example = "gltf: assets/helmet.glb", .required = true},
+    {.path = "scenes.skinning", .forms = kChoice, .choices = "linear|dual-quaternion", .fallback = "linear", .doc = "how joints carry vertices: blended matrices, as glTF says, or blended dual quaternions, which keep the volume of twisted limbs", .example = "skinning: dual-quaternion"},
     {.path = "scenes.transform", .forms = kSection, .doc = "places the scene in the world: scaled, then rotated, then translated", .example = "transform: { translate: [0, 1, 0], rotate: [0, 90 deg, 0], scale: 2 }"},
     {.path = "scenes.transform.translate", .forms = kVector3 | kTrack | kMotion, .quantity = length, .fallback = "[0, 0, 0]", .doc = "offset", .example = "translate: [0, 10 cm, 0]"},
     {.path = "scenes.transform.rotate", .forms = kRotation | kTrack, .quantity = angle, .fallback = "[0, 0, 0]", .doc = "degrees about the fixed axes x, y, z in this order; [x, y, z, w] is a quaternion", .example = "rotate: { axis: [0, 1, 0], angle: { keys: { 0 s: 0 deg, 4 s: 720 deg } } }"},

@@ -40,6 +40,10 @@ struct MaterialSpec {
     bool operator==(const MaterialSpec&) const = default;
 };
 
+/// How joints carry vertices: by blended matrices, as glTF says, or by blended dual quaternions, which keep the volume of
+/// twisted limbs.
+enum class Skinning { linear, dual_quaternion };
+
 struct SceneSpec {
     std::string id;
     std::filesystem::path gltf;  ///< absolute
@@ -55,6 +59,7 @@ struct SceneSpec {
     std::optional<std::string> variant;  ///< of KHR_materials_variants
     SourceLocation variant_where;
     std::vector<MaterialSpec> materials;
+    Skinning skinning = Skinning::linear;
     bool operator==(const SceneSpec&) const = default;
 };
 

@@ -60,6 +60,7 @@ private:
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
     void add(const SceneSpec& s) {
+        (*this)(s.skinning);
         (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed);
         (*this)(s.visible, s.variant, s.materials);
     }

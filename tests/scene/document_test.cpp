@@ -152,8 +152,6 @@ const Broken kBroken[] = {
     {"Draco", [](GltfBuilder& f) { f.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      "scene.gltf: error: /extensionsRequired/0 is KHR_draco_mesh_compression: Draco compressed meshes are not supported yet\n"
      "  export the file without mesh compression"},
-    {"Morph", [](GltfBuilder& f) { f.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}}; },
-     "scene.gltf: error: /meshes/0/primitives/0/targets uses morph targets, which Kadr does not support yet\n  export the mesh without shape keys"},
     {"Version", [](GltfBuilder& f) { f.json["asset"]["version"] = "1.0"; },
      "scene.gltf: error: /asset/version is \"1.0\"\n  expected \"2.0\"; convert the file to glTF 2.0"},
     {"MinVersion", [](GltfBuilder& f) { f.json["asset"]["minVersion"] = "2.1"; },

@@ -1,5 +1,7 @@
 #include "device/embree/alpha_filter.h"
 
+#include <cstddef>
+
 #include "kernels/integrator/interaction.h"
 #include "kernels/texture/texture.h"
 

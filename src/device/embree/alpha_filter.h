@@ -1,6 +1,7 @@
 #pragma once
 
-#include "device/embree/embree_scene.h"
+#include "device/embree/embree_api.h"
+#include "device/embree/geometry_user.h"
 
 namespace kadr {
 

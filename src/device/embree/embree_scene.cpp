@@ -116,7 +116,7 @@ private:
 };
 
 EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment)
-    : device_(device), scene_(scene), upper_(device) {
+    : device_(device), scene_(scene), upper_(device), deforming_(device, scene) {
     geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
     packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
@@ -167,6 +167,11 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
         const bool same_flat = have_frame_ && flattened == flattened_ && snapshot.render_origin == flat_origin_;
         if (!same_flat) build_flat(snapshot, flattened);
         ++(same_flat ? structures_.kept : structures_.built);
+        geometries_.resize(rigid_geometries_);
+        deforming_.set_frame(snapshot, view_, cull_backfaces_, geometries_);
+        structures_.built += deforming_.built();
+        structures_.updated += deforming_.refitted();
+        check(device_, "build the acceleration structure of a bending mesh");
         build_instances(snapshot, flattened);
         flattened_ = flattened;
         flat_origin_ = snapshot.render_origin;
@@ -202,6 +207,7 @@ bool EmbreeScene::set_materials(const SceneSnapshot& snapshot) {
 
 void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
     view_.previous_matrices = nullptr;
+    deforming_.set_previous(snapshot, geometries_);
     if (!snapshot.previous) return;
     previous_matrices_.resize(snapshot.instances.size());
     for (std::size_t i = 0; i < previous_matrices_.size(); ++i) {
@@ -221,13 +227,14 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
 
 std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) const {
     std::vector<std::uint64_t> uses(scene_.geometries.size(), 0);
-    for (const SnapshotInstance& instance : snapshot.instances) uses[instance.geometry] += instance.fixed ? 1 : 0;
+    const auto may_be = [](const SnapshotInstance& instance) { return instance.fixed && instance.deformed < 0; };
+    for (const SnapshotInstance& instance : snapshot.instances) uses[instance.geometry] += may_be(instance) ? 1 : 0;
     std::vector<bool> flattened(snapshot.instances.size(), false);
     for (std::size_t i = 0; i < flattened.size(); ++i) {
         const SnapshotInstance& instance = snapshot.instances[i];
         const std::uint64_t triangles = scene_.geometries[instance.geometry].indices.size() / 3;
         // What is hidden leaves the flat scene, which is then built anew; it costs rays nothing.
-        if (!instance.fixed || instance.mask == 0 ||
+        if (!may_be(instance) || instance.mask == 0 ||
             (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles))
             continue;
         const glm::dmat3 linear(instance.world_from_geometry);
@@ -279,6 +286,7 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
         rtcAttachGeometryByID(flat_.get(), handle.get(), static_cast<unsigned>(i));
         flat_triangles_ += geometry.triangle_count;
     }
+    rigid_geometries_ = geometries_.size();
     rtcCommitScene(flat_.get());
     check(device_, "build the acceleration structure");
 }
@@ -311,7 +319,7 @@ void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vect
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const SnapshotInstance& source = snapshot.instances[i];
         if (flattened[i] || source.mask == 0 || scene_.geometries[source.geometry].indices.empty()) continue;
-        meshes[i] = mesh_scene(source.geometry, source.material);
+        meshes[i] = source.deformed >= 0 ? deforming_.structure(source) : mesh_scene(source.geometry, source.material);
     }
     lay_out_motions(snapshot, flattened);
     instance_count_ = moving_count_ = 0;
@@ -338,6 +346,7 @@ void EmbreeScene::lay_out_motions(const SceneSnapshot& snapshot, const std::vect
     for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
         const SnapshotInstance& source = snapshot.instances[i];
         instances_[i] = {source.geometry, source.material, source.id};
+        if (source.deformed >= 0 && source.mask != 0) instances_[i].geometry = deforming_.geometry(source);
         motions_[i] = {0, 1, Kind::still, true};
         if (flattened[i]) {
             if (baked_[i]) instances_[i].geometry = next_baked++;
@@ -399,7 +408,7 @@ void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
             for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
             return r;
         };
-        const bool varies = texture >= 0 || motions_[i].kind != kernels::InstanceMotion::Kind::still;
+        const bool varies = texture >= 0 || geometry.key_count > 1 || motions_[i].kind != kernels::InstanceMotion::Kind::still;
         for (unsigned t = 0; t < geometry.triangle_count; ++t) {
             const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]),
                              c = place(geometry.indices[3 * t + 2]);
@@ -463,6 +472,7 @@ void EmbreeScene::set_requirements() {
         if (has_maps(view_.materials[instance.material]) || geometries_[instance.geometry].colors)
             requirements_ |= kernels::requirement::kMaps;
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
+    if (deforming_.bends()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;
     if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map)
         requirements_ |= kernels::requirement::kEmitters;

@@ -7,20 +7,15 @@
 #include <vector>
 
 #include "device/device.h"
+#include "device/embree/deforming_meshes.h"
 #include "device/embree/embree_api.h"
+#include "device/embree/geometry_user.h"
 #include "device/embree/instance_level.h"
 #include "film/film.h"
 #include "frame/snapshot.h"
 #include "kernels/scene/scene_view.h"
 
 namespace kadr {
-
-/// What the filter functions need of a geometry; Embree holds a pointer to it.
-struct GeometryUser {
-    const kernels::SceneView* view = nullptr;
-    unsigned geometry = 0, material = 0;  ///< indices into the view's tables
-    bool cull = false;
-};
 
 /// A scene as Embree and the kernels want it.
 ///
@@ -43,6 +38,7 @@ public:
     std::uint64_t moving_count() const { return moving_count_; }
     /// Structures built, changed and left alone by the last set_frame.
     const StructureCounts& structures() const { return structures_; }
+    const DeformingMeshes& deforming() const { return deforming_; }
 
 private:
     struct PackedGeometry;  ///< vertices as the kernels fetch them, in mesh coordinates or flattened
@@ -94,6 +90,8 @@ private:
     std::map<std::pair<unsigned, unsigned>, EmbreeSceneHandle> mesh_scenes_;  ///< by geometry and material
     EmbreeSceneHandle flat_;
     InstanceLevel upper_;
+    DeformingMeshes deforming_;
+    std::size_t rigid_geometries_ = 0;  ///< of geometries_; those of bending meshes follow
     std::vector<bool> flattened_;  ///< of the frame before
     glm::dvec3 flat_origin_{0};
     bool have_frame_ = false;

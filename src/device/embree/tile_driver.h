@@ -351,17 +351,19 @@ private:
         const SceneView& scene = *job_->scene;
         const Geometry& g = scene.geometries[scene.instances[instance].geometry];
         const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
-        const Vec3f p = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position,
-                                    g.vertices[index[2]].position, u, v);
-        const auto place = [&](const Affine& a) {
+        const Vec3f opening = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position,
+                                          g.vertices[index[2]].position, u, v);
+        const Vec3f earlier =
+            g.previous ? barycentric(g.previous[index[0]], g.previous[index[1]], g.previous[index[2]], u, v) : opening;
+        const auto place = [&](const Affine& a, Vec3f p) {
             return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3],
                          a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
                          a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
         };
         const int width = scene.settings.width, height = scene.settings.height;
-        const Vec2f now = project<float>(scene.camera, width, height, place(transform_at(scene, instance, 0.0f)), 0.0f);
-        const Vec2f before =
-            project<float>(scene.previous_camera, width, height, place(scene.previous_matrices[instance]), 0.0f);
+        const Vec2f now = project<float>(scene.camera, width, height, place(transform_at(scene, instance, 0.0f), opening), 0.0f);
+        const Vec2f before = project<float>(scene.previous_camera, width, height,
+                                            place(scene.previous_matrices[instance], earlier), 0.0f);
         return {now.x - before.x, now.y - before.y};
     }
 
@@ -471,9 +473,12 @@ TileDriver* make_driver(IntegratorKind integrator, unsigned needs) {
     using namespace requirement;
     if (integrator == IntegratorKind::direct) {
         if (needs == 0) return new Driver<F, 0, IntegratorKind::direct>();
+        if ((needs & kDeformation) != 0)
+            return new Driver<F, kMaps | kTransforms | kDeformation, IntegratorKind::direct>();
         return new Driver<F, kMaps | kTransforms, IntegratorKind::direct>();
     }
     if (needs == 0) return new Driver<F, 0, IntegratorKind::path>();
+    if ((needs & kDeformation) != 0) return new Driver<F, kAll | kDeformation, IntegratorKind::path>();
     if (needs == kEmitters) return new Driver<F, kEmitters, IntegratorKind::path>();
     if ((needs & kTransforms) == 0) return new Driver<F, kMaps | kEmitters, IntegratorKind::path>();
     return new Driver<F, kAll, IntegratorKind::path>();

@@ -1,0 +1,109 @@
+#include "device/embree/deforming_meshes.h"
+
+#include <algorithm>
+
+#include "device/embree/alpha_filter.h"
+
+namespace kadr {
+namespace {
+
+/// Growth of the tree's cost beyond which a structure is built anew: rays through a refitted structure stay within a
+/// fifth of the speed of a new one (tools/bench/skinning_bench.cpp compares the two).
+constexpr double kMostGrowth = 1.2;
+
+std::span<const kernels::Vertex> first_key(const DeformedMesh& mesh) { return std::span(mesh.vertices).first(mesh.vertices.size() / mesh.key_count); }
+
+}  // namespace
+
+const DeformingMeshes::Entry& DeformingMeshes::find(const SnapshotInstance& instance) const {
+    return entries_.at({deformer_of_[static_cast<std::size_t>(instance.deformed)], instance.material});
+}
+
+void DeformingMeshes::set_frame(const SceneSnapshot& snapshot, const kernels::SceneView& view, bool cull_backfaces, std::vector<kernels::Geometry>& geometries) {
+    deformer_of_.clear();
+    bends_ = false;
+    built_ = refitted_ = 0;
+    for (const auto& mesh : snapshot.deformed) deformer_of_.push_back(mesh->deformer);
+    std::map<Key, int> shown;  // deformed mesh
+    for (const SnapshotInstance& instance : snapshot.instances)
+        if (instance.deformed >= 0 && instance.mask != 0) shown[{deformer_of_[static_cast<std::size_t>(instance.deformed)], instance.material}] = instance.deformed;
+    std::erase_if(entries_, [&](const auto& entry) { return !shown.count(entry.first); });
+    for (const auto& [key, index] : shown) {
+        Entry& entry = entries_[key];
+        const auto& mesh = snapshot.deformed[static_cast<std::size_t>(index)];
+        if (!entry.user) entry.user = std::make_unique<GeometryUser>();
+        *entry.user = {&view, static_cast<unsigned>(geometries.size()), key.second, cull_backfaces};
+        update(entry, mesh, view.materials[key.second], cull_backfaces);
+        geometries.push_back(view_of(entry));
+        bends_ = bends_ || mesh->key_count > 1;
+    }
+}
+
+void DeformingMeshes::set_previous(const SceneSnapshot& snapshot, std::vector<kernels::Geometry>& geometries) {
+    for (std::size_t i = 0; i < snapshot.deformed.size(); ++i)
+        for (auto& [key, entry] : entries_) {
+            if (key.first != snapshot.deformed[i]->deformer) continue;
+            entry.previous = snapshot.previous ? snapshot.previous->deformed[i] : std::vector<kernels::Vec3f>{};
+            geometries[entry.user->geometry].previous = snapshot.previous ? entry.previous.data() : nullptr;
+        }
+}
+
+void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bool cull_backfaces) {
+    const std::vector<std::uint32_t>& indices = scene_.geometries[entry.mesh->geometry].indices;
+    entry.structure.reset(rtcNewScene(device_));
+    entry.triangles.reset(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    // What Embree can refit lives in a dynamic scene; several keys need the other kind.
+    if (entry.mesh->key_count == 1) {
+        rtcSetSceneFlags(entry.structure.get(), RTC_SCENE_FLAG_DYNAMIC);
+        rtcSetGeometryBuildQuality(entry.triangles.get(), RTC_BUILD_QUALITY_REFIT);
+    }
+    if (needs_filter(material, cull_backfaces)) {
+        rtcSetGeometryIntersectFilterFunction(entry.triangles.get(), alpha_filter);
+        rtcSetGeometryOccludedFilterFunction(entry.triangles.get(), alpha_filter);
+    }
+    rtcSetGeometryUserData(entry.triangles.get(), entry.user.get());
+    rtcSetGeometryTimeStepCount(entry.triangles.get(), entry.mesh->key_count);
+    rtcSetSharedGeometryBuffer(entry.triangles.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, indices.size() / 3);
+    rtcAttachGeometry(entry.structure.get(), entry.triangles.get());
+}
+
+void DeformingMeshes::point_at(Entry& entry, const DeformedMesh& mesh) {
+    const std::size_t count = mesh.vertices.size() / mesh.key_count;
+    for (unsigned k = 0; k < mesh.key_count; ++k)
+        rtcSetSharedGeometryBuffer(entry.triangles.get(), RTC_BUFFER_TYPE_VERTEX, k, RTC_FORMAT_FLOAT3, mesh.vertices.data() + k * count, 0, sizeof(kernels::Vertex), count);
+}
+
+void DeformingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, const kernels::Material& material, bool cull_backfaces) {
+    if (entry.mesh && entry.mesh->version == mesh->version && entry.mesh->key_count == mesh->key_count) return;
+    const std::vector<std::uint32_t>& indices = scene_.geometries[mesh->geometry].indices;
+    const bool refit = entry.mesh && mesh->key_count == 1 && entry.mesh->key_count == 1 &&
+                       entry.bounds.cost(first_key(*mesh), indices) <= kMostGrowth * entry.cost_when_built;
+    entry.mesh = mesh;
+    if (!refit) {
+        create(entry, material, cull_backfaces);
+        if (mesh->key_count == 1) {
+            entry.bounds.order(first_key(*mesh), indices);
+            entry.cost_when_built = entry.bounds.cost(first_key(*mesh), indices);
+        }
+    }
+    ++(refit ? refitted_ : built_);
+    point_at(entry, *mesh);
+    rtcCommitGeometry(entry.triangles.get());
+    rtcCommitScene(entry.structure.get());
+}
+
+kernels::Geometry DeformingMeshes::view_of(const Entry& entry) const {
+    const GeometryData& source = scene_.geometries[entry.mesh->geometry];
+    kernels::Geometry g{};
+    g.vertices = entry.mesh->vertices.data();
+    g.vertex_count = static_cast<unsigned>(source.positions.size());
+    g.key_count = entry.mesh->key_count;
+    g.indices = source.indices.data();
+    g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
+    if (!entry.mesh->tangents.empty()) g.tangents = entry.mesh->tangents.data();
+    if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
+    if (!source.colors.empty()) g.colors = source.colors.data();
+    return g;
+}
+
+}  // namespace kadr

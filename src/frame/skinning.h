@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "kernels/scene/scene_types.h"
+#include "kernels/scene/scene_view.h"
+#include "scene/scene.h"
+#include "shot/shot.h"
+
+namespace kadr {
+
+/// What bends a mesh at one time, in double.
+struct DeformationPose {
+    std::vector<glm::dmat4> joints;  ///< [joint] deformed_from_geometry; one for a mesh without a skin
+    std::vector<double> weights;     ///< [morph target]
+    bool finite() const;
+    bool operator==(const DeformationPose&) const = default;
+};
+
+/// A rigid motion as a unit dual quaternion, x y z w, after a stretch (scale and shear, linear).
+struct DualQuaternionJoint {
+    kernels::Affine stretch;
+    std::array<float, 4> real{}, dual{};
+};
+
+/// A pose as the vertex loops read it.
+class VertexPose {
+public:
+    VertexPose(const DeformationPose& pose, Skinning skinning);
+    std::span<const kernels::Affine> matrices() const { return matrices_; }
+    std::span<const DualQuaternionJoint> dual_quaternions() const { return dual_quaternions_; }
+    std::span<const float> weights() const { return weights_; }
+    Skinning skinning() const { return skinning_; }
+
+private:
+    Skinning skinning_;
+    std::vector<kernels::Affine> matrices_;
+    std::vector<DualQuaternionJoint> dual_quaternions_;  ///< filled for dual-quaternion skinning
+    std::vector<float> weights_;
+};
+
+/// The vertices of a mesh in a pose: morph targets first, then the joints (glTF 2.0, 3.7.2.2), in parallel.
+///
+/// Linear skinning blends the joints' matrices; normals go by the cofactors of the blend. Dual-quaternion skinning blends
+/// unit dual quaternions, the stretches of the joints linearly before them.
+/// Source: Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008, 4 (antipodality: 4.1).
+/// Normals are unit, or zero where the mesh is flat; texture coordinates are copied.
+/// @param vertices  [vertex], written whole
+/// @param tangents  [vertex], or empty where the mesh has none
+void deform_vertices(const GeometryData& geometry, const VertexPose& pose, std::span<kernels::Vertex> vertices,
+                     std::span<kernels::Vec4f> tangents);
+
+}  // namespace kadr
