@@ -111,17 +111,30 @@ double distance(const Track<double>& track, std::size_t i, double from_u, double
     return std::abs(segments::value_at(track, i, to_u) - segments::value_at(track, i, from_u));
 }
 
-/// Radians.
+double angle_between(const glm::dquat& a, const glm::dquat& b) {
+    const glm::dquat difference = glm::conjugate(segments::unit(a)) * segments::unit(b);
+    return 2 * std::atan2(glm::length(glm::dvec3(difference.x, difference.y, difference.z)), std::abs(difference.w));
+}
+
+/// Radians. Squad and the spline swing out and back between two keys: their turn is that of many short steps.
 double distance(const Track<glm::dquat>& track, std::size_t i, double from_u, double to_u) {
-    const glm::dquat difference = glm::conjugate(segments::unit(segments::value_at(track, i, from_u))) * segments::unit(segments::value_at(track, i, to_u));
-    const double shorter = 2 * std::atan2(glm::length(glm::dvec3(difference.x, difference.y, difference.z)), std::abs(difference.w));
-    if (!track.keys[i].spin) return shorter;
     const auto y = [&](double u) { return track.keys[i].ease ? eased(*track.keys[i].ease, u) : u; };
-    const segments::SegmentTurn turn = segments::turn_of_segment(track, i);
-    if (track.interpolation == Interpolation::linear) return 2 * glm::length(turn.step + turn.extra) * std::abs(y(to_u) - y(from_u));
-    const auto done = [&](double u) { return segments::whole_turns_done(track, i, y(u)); };
-    // Squad's own turn is within its arc; twice, because it may swing out.
-    return 2 * glm::distance(done(from_u), done(to_u)) + 4 * glm::length(turn.step) * std::abs(y(to_u) - y(from_u));
+    if (track.interpolation == Interpolation::linear && track.keys[i].spin) {
+        const segments::SegmentTurn turn = segments::turn_of_segment(track, i);
+        return 2 * glm::length(turn.step + turn.extra) * std::abs(y(to_u) - y(from_u));
+    }
+    const int steps = track.interpolation == Interpolation::linear ? 1 : 16;
+    const auto whole = [&](double u) { return segments::whole_turns_done(track, i, y(u)); };
+    const auto rest = [&](double u) { return exp_of(-whole(u)) * segments::unit(segments::value_at(track, i, u)); };
+    double turn = 0;
+    for (int n = 0; n < steps; ++n) {
+        const double a = std::lerp(from_u, to_u, static_cast<double>(n) / steps), b = std::lerp(from_u, to_u, (n + 1.0) / steps);
+        if (track.keys[i].spin)
+            turn += angle_between(rest(a), rest(b)) + 2 * glm::distance(whole(a), whole(b));
+        else
+            turn += angle_between(segments::value_at(track, i, a), segments::value_at(track, i, b));
+    }
+    return turn;
 }
 
 double end_speed(const Track<double>& track, bool after) { return std::abs(segments::end_slope_before_easing(track, after)); }

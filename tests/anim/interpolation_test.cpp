@@ -146,7 +146,8 @@ RC_GTEST_PROP(SpinProperty, TurnIsNeverLessThanWhatIsSeen, ()) {
     if (!jumps.empty()) to = jumps.front() - 1e-9;
     constexpr int kSteps = 400;
     for (int i = 0; i < kSteps; ++i) seen += angle_between(evaluate(track, std::lerp(from, to, i / 400.0)), evaluate(track, std::lerp(from, to, (i + 1) / 400.0)));
-    RC_ASSERT(glm::degrees(turn_of(track, from, to)) >= (track.interpolation == Interpolation::linear ? 1 - 1e-6 : 0.8) * seen - 1e-6);  // squad swings out of its arcs a little
+    // Squad's turn is that of sixteen chords a segment; between keys almost 180 degrees apart it whips around within one.
+    RC_ASSERT(glm::degrees(turn_of(track, from, to)) >= (track.interpolation == Interpolation::linear ? 1 - 1e-6 : 0.85) * seen - 1e-6);
 }
 
 // ---- glTF's CUBICSPLINE of rotations ----
