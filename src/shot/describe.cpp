@@ -49,6 +49,7 @@ std::string units_text() {
         {"luminance", Quantity::luminance},
         {"power", Quantity::power},
         {"exposure", Quantity::stops},
+        {"loudness", Quantity::gain},
     };
     for (const auto& [name, quantity] : kRows) text += fmt::format("  {:<18}  {}\n", name, unit_names(quantity));
     return text;
@@ -69,6 +70,8 @@ std::string whole_manual() {
     append_rows(text, "orbit", 2);
     text += "\nShake\n";
     append_rows(text, "shake", 2);
+    text += "\nReels: a second kind of file, which lists shots and becomes one video; `kadr describe reel.shots`\n";
+    append_rows(text, "reel", 2);
     return text + units_text();
 }
 
@@ -97,9 +100,11 @@ std::string one_field(const FieldSpec& field) {
 /// What somebody may have meant: the nearest path, or else the paths whose last part ("samples") is nearest.
 std::vector<std::string> similar_paths(std::string_view key) {
     std::vector<std::string> paths, keys, result;
-    for (const FieldSpec& field : schema_table()) {
-        paths.emplace_back(field.path);
-        keys.emplace_back(key_of(field));
+    for (const auto table : {schema_table(), reel_table()}) {
+        for (const FieldSpec& field : table) {
+            paths.emplace_back(field.path);
+            keys.emplace_back(key_of(field));
+        }
     }
     const auto path = nearest_name(key, paths);
     if (path) return {*path};

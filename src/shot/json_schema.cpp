@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kDraft = "https://json-schema.org/draft/2020-12/schema";
+
 Json section_schema(std::string_view path);
 
 Json number_schema(const FieldSpec& field, const char* type) {
@@ -157,7 +159,8 @@ Json value_schema(const FieldSpec& field) {
     if (path == "shutter") forms.push_back({{"const", 0}});
     if (path == "key.ease" || path == "motion.ease" || path == "orbit.ease") forms.push_back(list_schema({{"type", "number"}}, 4));
     if (path == "scenes") forms.front()["items"] = any_of({forms.front()["items"], {{"type", "string"}}});
-    if (path == "output.video") forms.push_back({{"const", "none"}});
+    if (path == "reel.shots") forms.front()["items"] = any_of({forms.front()["items"], {{"type", "string"}}});
+    if (path == "output.video" || path == "reel.output.video") forms.push_back({{"const", "none"}});
     if (forms.empty()) return Json::object();
     Json value = any_of(std::move(forms));
     if (field.forms & kMotion) return any_of({value, track_schema(value), {{"$ref", "#/$defs/motion"}}});
@@ -181,13 +184,20 @@ Json section_schema(std::string_view path) {
     return schema;
 }
 
+std::string reel_schema_as_json() {
+    Json schema{{"$schema", kDraft}, {"title", "Kadr reel, format version 1"}};
+    schema.update(section_schema("reel"));
+    schema["properties"]["kadr-reel"]["const"] = 1;
+    return schema.dump(2) + "\n";
+}
+
 }  // namespace
 
-std::string schema_as_json() {
-    Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Kadr shot, format version 1"}};
+std::string schema_as_json(std::string_view kind) {
+    if (kind == "reel") return reel_schema_as_json();
+    Json schema{{"$schema", kDraft}, {"title", "Kadr shot, format version 1"}};
     schema.update(section_schema(""));
     schema["properties"]["kadr"]["const"] = 1;
-    schema["properties"].erase("kadr-reel");
     for (const char* grammar : {"rotation", "motion", "orbit", "shake"}) schema["$defs"][grammar] = section_schema(grammar);
     return schema.dump(2) + "\n";
 }

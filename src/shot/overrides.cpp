@@ -11,9 +11,6 @@ namespace kadr {
 
 namespace {
 
-Diagnostic problem_of(const YamlSource& source, std::string found, std::string expected) {
-    return diagnostic_at({&source, -1, 0, 0}, std::move(found), std::move(expected));
-}
 
 YamlNode scalar_node(const YamlSource& source, std::string text, bool quoted) {
     YamlNode node;
@@ -24,10 +21,10 @@ YamlNode scalar_node(const YamlSource& source, std::string text, bool quoted) {
     return node;
 }
 
-YamlNode map_node(const YamlSource& source) {
+YamlNode map_node(const YamlPlace& place) {
     YamlNode node;
     node.kind = YamlNode::Kind::map;
-    node.place = {&source, -1, 0, 0};
+    node.place = place;
     return node;
 }
 
@@ -73,13 +70,14 @@ std::string item_names(const YamlNode& list) {
 /// One key path of the command line laid over the document.
 class Override {
 public:
-    Override(const YamlSource& source, std::string path)
-        : source_(source), path_(std::move(path)), parts_(split_path(path_)) {}
+    /// @param place  of the path, for messages
+    Override(const YamlPlace& place, std::string path)
+        : place_(place), path_(std::move(path)), parts_(split_path(path_)) {}
 
     std::optional<Diagnostic> put(YamlNode& root, YamlNode value) {
         if (std::any_of(parts_.begin(), parts_.end(), [](const std::string& part) { return part.empty(); })) {
-            return problem_of(source_, fmt::format("'{}' is not a key path", path_),
-                              "expected a path such as render.samples or lights.key.intensity");
+            return diagnostic_at(place_, fmt::format("'{}' is not a key path", path_),
+                                 "expected a path such as render.samples or lights.key.intensity");
         }
         YamlNode* node = &root;
         for (const std::string& part : parts_) {
@@ -93,26 +91,28 @@ public:
 private:
     /// The value under one part of the path; made where a map does not have it yet.
     YamlNode* descend(YamlNode& node, const std::string& part) {
-        if (node.kind == YamlNode::Kind::null) node = map_node(source_);
+        if (node.kind == YamlNode::Kind::null) node = map_node(place_);
         if (node.is_list()) {
             YamlNode* item = find_item(node, part);
             if (!item)
-                problem_ = problem_of(source_, fmt::format("there is no entry '{}'", part),
-                                      fmt::format("the list has: {}", item_names(node)));
+                problem_ = diagnostic_at(place_, fmt::format("there is no entry '{}'", part),
+                                         fmt::format("the list has: {}", item_names(node)));
             return item;
         }
         if (!node.is_map()) {
             problem_ =
-                problem_of(source_, fmt::format("'{}' is below '{}', which is not a section here", part, node.text),
+                diagnostic_at(place_, fmt::format("'{}' is below '{}', which is not a section here", part, node.text),
                            "set the whole value instead, for example --set 'render.seed={ value: 7, animated: true }'");
             return nullptr;
         }
         if (YamlEntry* entry = find_entry(node, part)) return &entry->value;
-        node.entries.push_back({scalar_node(source_, part, false), {}});
+        YamlNode key = scalar_node(*place_.source, part, false);
+        key.place = place_;
+        node.entries.push_back({std::move(key), {}});
         return &node.entries.back().value;
     }
 
-    const YamlSource& source_;
+    const YamlPlace place_;
     std::string path_;
     std::vector<std::string> parts_;
     std::optional<Diagnostic> problem_;
@@ -130,18 +130,23 @@ public:
             problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
         }
     }
+    void put_node(const YamlNode& path, YamlNode value) {
+        if (value.kind == YamlNode::Kind::null) value.place = path.place;
+        if (auto problem = Override(path.place, path.text).put(document_.root, std::move(value)))
+            problems_.push_back(std::move(*problem));
+    }
     /// A value that is taken as it is typed, not as YAML.
     void put_text(std::string_view option, const std::string& path, const std::string& value, bool quoted) {
         const YamlSource& source = argument(option, value);
         put(source, path, scalar_node(source, value, quoted));
     }
-    void put_size(int width, int height) {
+    void put_size(const char* key, int width, int height) {
         const YamlSource& source = argument("--size", fmt::format("{}x{}", width, height));
         YamlNode list;
         list.kind = YamlNode::Kind::list;
         list.place = {&source, -1, 0, 0};
         for (const int side : {width, height}) list.items.push_back(scalar_node(source, std::to_string(side), false));
-        put(source, "image.size", std::move(list));
+        put(source, key, std::move(list));
     }
     /// Replaces the file's video; its codec and quality stay where the new file has the same ending.
     void put_video(const std::string& file) {
@@ -163,7 +168,7 @@ private:
     }
     void put(const YamlSource& source, const std::string& path, YamlNode value) {
         if (value.kind == YamlNode::Kind::null) value.place = {&source, -1, 0, 0};
-        if (auto problem = Override(source, path).put(document_.root, std::move(value)))
+        if (auto problem = Override({&source, -1, 0, 0}, path).put(document_.root, std::move(value)))
             problems_.push_back(std::move(*problem));
     }
 
@@ -175,13 +180,14 @@ private:
 }  // namespace
 
 std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides,
-                                        const std::filesystem::path& working_folder) {
+                                        const std::filesystem::path& working_folder, const char* size_key) {
     Overrides apply(document, working_folder);
+    for (const auto& [path, value] : overrides.nodes) apply.put_node(path, value);
     for (const auto& [path, value] : overrides.set) apply.set(path, value);
     if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);
     if (!overrides.output.empty()) apply.put_text("--output", "output.frames", overrides.output, true);
     if (overrides.samples > 0) apply.put_text("--samples", "render.samples", std::to_string(overrides.samples), false);
-    if (overrides.width > 0 && overrides.height > 0) apply.put_size(overrides.width, overrides.height);
+    if (overrides.width > 0 && overrides.height > 0) apply.put_size(size_key, overrides.width, overrides.height);
     if (!overrides.video.empty()) apply.put_video(overrides.video);
     return apply.take_problems();
 }

@@ -30,13 +30,18 @@ bool is_frame_placeholder(std::string_view inside) {
     return !width.empty() && width.size() <= 2 && width.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+const char* expected_placeholders(Placeholders allowed) {
+    if (allowed.shot) return "expected {name}, {shot}, {frame} or {frame:04}";
+    return allowed.frame ? "expected {name}, {frame} or {frame:04}" : "expected {name}";
+}
+
 struct Pattern {
     std::string text;  ///< {name} filled in
     bool has_frame = false;
 };
 
 /// Fills {name} in. Reports other braces; `found` names the first bad placeholder.
-std::optional<Pattern> fill_pattern(const Field& field, const std::string& text, bool frame_allowed) {
+std::optional<Pattern> fill_pattern(const Field& field, const std::string& text, Placeholders allowed) {
     Pattern pattern;
     for (std::size_t i = 0; i < text.size();) {
         if (text[i] != '{' && text[i] != '}') {
@@ -45,14 +50,15 @@ std::optional<Pattern> fill_pattern(const Field& field, const std::string& text,
         }
         const std::size_t close = text[i] == '{' ? text.find('}', i) : std::string::npos;
         const std::string inside = close == std::string::npos ? "" : text.substr(i + 1, close - i - 1);
-        const bool frame = frame_allowed && is_frame_placeholder(inside);
-        if (inside != "name" && !frame) {
+        const bool frame = allowed.frame && is_frame_placeholder(inside);
+        const bool shot = allowed.shot && inside == "shot";
+        if (inside != "name" && !frame && !shot) {
             field.error(fmt::format("{} has '{}', which is no placeholder", field.name,
                                     text.substr(i, close == std::string::npos ? 1 : close - i + 1)),
-                        frame_allowed ? "expected {name}, {frame} or {frame:04}" : "expected {name}");
+                        expected_placeholders(allowed));
             return std::nullopt;
         }
-        pattern.text += frame ? text.substr(i, close - i + 1) : field.context->name;
+        pattern.text += frame || shot ? text.substr(i, close - i + 1) : field.context->name;
         pattern.has_frame = pattern.has_frame || frame;
         i = close + 1;
     }
@@ -63,9 +69,9 @@ std::string absolute_path(const YamlNode& node, const std::string& path) {
     return (node.place.source->folder / path).lexically_normal().string();
 }
 
-void read_pattern(const Field& field, bool one_frame, OutputSpec& output) {
+void read_frame_pattern(const Field& field, bool one_frame, OutputSpec& output) {
     const auto text = read_text(field);
-    const auto pattern = text ? fill_pattern(field, *text, true) : std::nullopt;
+    const auto pattern = text ? fill_pattern(field, *text, {.frame = true}) : std::nullopt;
     if (!pattern) return;
     if (!ends_in(pattern->text, kImageEndings))
         return field.error(fmt::format("{} is '{}'", field.name, *text),
@@ -84,10 +90,10 @@ void read_pattern(const Field& field, bool one_frame, OutputSpec& output) {
 
 void read_patterns(const Field& field, bool one_frame, OutputSpec& output) {
     if (!field) return;
-    if (!field.node->is_list()) return read_pattern(field, one_frame, output);
+    if (!field.node->is_list()) return read_frame_pattern(field, one_frame, output);
     if (field.node->items.empty()) return field.mismatch();
     for (std::size_t i = 0; i < field.node->items.size(); ++i)
-        read_pattern(field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i)), one_frame, output);
+        read_frame_pattern(field.with(field.node->items[i], fmt::format("{}[{}]", field.name, i)), one_frame, output);
 }
 
 void read_aovs(const Field& field, OutputSpec& output) {
@@ -109,7 +115,7 @@ void read_aovs(const Field& field, OutputSpec& output) {
 
 void read_video_file(const Field& field, VideoSpec& video) {
     const auto text = read_text(field);
-    const auto filled = text ? fill_pattern(field, *text, false) : std::nullopt;
+    const auto filled = text ? fill_pattern(field, *text, {}) : std::nullopt;
     if (!filled) return;
     video.where = location_of(field.node->place);
     video.file = absolute_path(*field.node, filled->text);
@@ -150,6 +156,17 @@ void read_pixel_format(const Field& field, VideoSpec& video) {
     video.pixel_format = *format;
 }
 
+/// The default pattern's {name} without a document to point at; read_name refuses names that are no file names.
+std::string default_pattern(const std::string& name, const std::filesystem::path& working_folder) {
+    std::string pattern = kDefaultPattern;
+    for (std::size_t at = pattern.find("{name}"); at != std::string::npos;
+         at = pattern.find("{name}", at + name.size()))
+        pattern.replace(at, 6, name);
+    return (working_folder / pattern).lexically_normal().string();
+}
+
+}  // namespace
+
 std::optional<VideoSpec> read_video(const Section& section) {
     const Field field = section["video"];
     if (!field || is_word(field, "none")) return std::nullopt;
@@ -169,16 +186,11 @@ void read_png_bits(const Field& field, OutputSpec& output) {
     assign(output.png_bits, bits);
 }
 
-/// The default pattern's {name} without a document to point at; read_name refuses names that are no file names.
-std::string default_pattern(const std::string& name, const std::filesystem::path& working_folder) {
-    std::string pattern = kDefaultPattern;
-    for (std::size_t at = pattern.find("{name}"); at != std::string::npos;
-         at = pattern.find("{name}", at + name.size()))
-        pattern.replace(at, 6, name);
-    return (working_folder / pattern).lexically_normal().string();
+std::optional<std::string> read_pattern(const Field& field, Placeholders allowed) {
+    const auto text = read_text(field);
+    const auto filled = text ? fill_pattern(field, *text, allowed) : std::nullopt;
+    return filled ? std::optional(absolute_path(*field.node, filled->text)) : std::nullopt;
 }
-
-}  // namespace
 
 OutputSpec read_output(const Section& shot, bool one_frame, const std::filesystem::path& working_folder) {
     OutputSpec output;

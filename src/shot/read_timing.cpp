@@ -39,15 +39,6 @@ std::optional<Rational> parse_rational(std::string_view text) {
     return make_rational(*above, below);
 }
 
-std::optional<Rational> read_rational(const Field& field) {
-    if (!field) return std::nullopt;
-    const bool plain = field.node->is_scalar() && !field.node->quoted;
-    const auto value = plain ? parse_rational(field.node->text) : std::nullopt;
-    if (value && value->value() <= field.spec->high) return value;
-    field.mismatch();
-    return std::nullopt;
-}
-
 bool is_frame_part(const YamlEntry& entry) {
     const std::string& text = entry.key.text;
     return entry.value.kind == YamlNode::Kind::null && !entry.key.quoted && !text.empty() &&
@@ -102,6 +93,15 @@ std::optional<std::vector<int>> read_frames(const Field& field) {
 
 }  // namespace
 
+std::optional<Rational> read_rational(const Field& field) {
+    if (!field) return std::nullopt;
+    const bool plain = field.node->is_scalar() && !field.node->quoted;
+    const auto value = plain ? parse_rational(field.node->text) : std::nullopt;
+    if (value && value->value() <= field.spec->high) return value;
+    field.mismatch();
+    return std::nullopt;
+}
+
 ReadTiming read_timing(const Section& shot) {
     const Field whole = shot["timing"];
     YamlNode cleaned;
@@ -117,17 +117,9 @@ ReadTiming read_timing(const Section& shot) {
     return result;
 }
 
-ImageSpec read_image(const Section& shot) {
-    const Section section = shot.section("image");
-    ImageSpec image;
-    assign(image.pixel_aspect, read_number(section["pixel_aspect"]));
-    read_choice_index(section["crop"]);
-    const Field size = section["size"];
-    if (!size) return image;
-    if (!size.node->is_list() || size.node->items.size() != 2) {
-        size.mismatch();
-        return image;
-    }
+void read_size(const Field& size, ImageSpec& image) {
+    if (!size) return;
+    if (!size.node->is_list() || size.node->items.size() != 2) return size.mismatch();
     std::array<int*, 2> sides{&image.width, &image.height};
     for (std::size_t i = 0; i < sides.size(); ++i) {
         const YamlNode& item = size.node->items[i];
@@ -138,8 +130,16 @@ ImageSpec read_image(const Section& shot) {
         if (whole)
             *sides[i] = static_cast<int>(parsed.value);
         else
-            size.with(item, fmt::format("image.size[{}]", i)).mismatch();
+            size.with(item, fmt::format("{}[{}]", size.name, i)).mismatch();
     }
+}
+
+ImageSpec read_image(const Section& shot) {
+    const Section section = shot.section("image");
+    ImageSpec image;
+    assign(image.pixel_aspect, read_number(section["pixel_aspect"]));
+    read_choice_index(section["crop"]);
+    read_size(section["size"], image);
     return image;
 }
 

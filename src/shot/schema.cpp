@@ -88,8 +88,10 @@ constexpr FormRow kFormRows[] = {
 }  // namespace
 
 const FieldSpec* find_field(std::string_view path) {
-    for (const FieldSpec& field : schema_table()) {
-        if (path == field.path) return &field;
+    for (const auto table : {schema_table(), reel_table()}) {
+        for (const FieldSpec& field : table) {
+            if (path == field.path) return &field;
+        }
     }
     return nullptr;
 }
@@ -101,7 +103,7 @@ bool is_grammar(std::string_view section) {
 
 std::vector<const FieldSpec*> fields_below(std::string_view section) {
     std::vector<const FieldSpec*> fields;
-    for (const FieldSpec& field : schema_table()) {
+    for (const FieldSpec& field : section.starts_with("reel") ? reel_table() : schema_table()) {
         const std::string_view path = field.path;
         if (parent_of(path) == section && !(section.empty() && is_grammar(path))) fields.push_back(&field);
     }

@@ -56,10 +56,13 @@ struct FieldSpec {
     bool built = true;  ///< false: known to the format, refused by name
 };
 
-/// Every key of the format, sections before their keys.
+/// Every key of a shot file, sections before their keys.
 std::span<const FieldSpec> schema_table();
 
-/// @return null for a path the format does not have
+/// Every key of a reel file, below "reel": "reel.shots.in".
+std::span<const FieldSpec> reel_table();
+
+/// A row of either table. @return null for a path the format does not have
 const FieldSpec* find_field(std::string_view path);
 
 /// Rows directly below a section ("" for the top), in the table's order.

@@ -12,7 +12,6 @@ using enum Quantity;
 // clang-format off
 constexpr FieldSpec kTable[] = {
     {.path = "kadr", .forms = kInteger, .doc = "version of the shot format; this Kadr reads version 1", .example = "kadr: 1", .required = true},
-    {.path = "kadr-reel", .doc = "a reel: a list of shots, cut and faded into one video", .built = false},
     {.path = "name", .forms = kText, .fallback = "the file's name without its ending", .doc = "name of the shot; {name} in output patterns", .example = "name: helmet-orbit"},
 
     {.path = "timing", .forms = kSection, .doc = "frames of the shot and their rate", .example = "timing: { fps: 24, frames: 0-95 }"},

@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "shot/shot.h"
+#include "shot/yaml_document.h"
 
 namespace kadr {
 
-/// What the command line lays over the file. The command line wins; its paths are relative to the working folder.
+/// What the command line, or a reel, lays over the file. The command line wins; its paths are relative to the working folder.
 struct ShotOverrides {
+    std::vector<std::pair<YamlNode, YamlNode>> nodes;      ///< key paths and values of a document (a reel's `set`);
+                                                           ///< the command line below wins over them
     std::vector<std::pair<std::string, std::string>> set;  ///< "render.samples" -> "16", values in YAML
     std::string frames;                                    ///< "1-24x2,40"; empty: the file's
     std::string output;                                    ///< frame pattern
@@ -31,7 +34,8 @@ Shot parse_shot_text(std::string_view text, const std::filesystem::path& path, c
 /// @throws InputError  for an unknown key, with "did you mean"
 std::string describe_schema(std::string_view key);
 
-/// The format as a JSON Schema (draft 2020-12) for editors, from the same table.
-std::string schema_as_json();
+/// The format of a shot, or of a reel where `kind` is "reel", as a JSON Schema (draft 2020-12) for editors, from the
+/// same table.
+std::string schema_as_json(std::string_view kind = {});
 
 }  // namespace kadr

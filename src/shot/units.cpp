@@ -82,6 +82,7 @@ const std::vector<UnitSpec>& unit_table() {
         {"lm", Quantity::power, 1, 1},
         {"stops", Quantity::stops, 1, 1},
         {"ev", Quantity::stops, 1, 1},
+        {"dB", Quantity::gain, 1, 1},
     };
     return table;
 }

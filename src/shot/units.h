@@ -22,7 +22,8 @@ enum class Quantity {
     intensity,
     luminance,
     power,
-    stops
+    stops,
+    gain
 };
 
 /// A unit that may follow a number: value_inside = number * multiplier / divisor. The first of a quantity's units is

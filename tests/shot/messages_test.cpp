@@ -64,10 +64,10 @@ kadr: 1)",
   expected `key: value` lines; check brackets, quotes and indentation (spaces, no tabs))"},
         {std::string(R"(kadr-reel: 1
 shots: [])"),
-         R"(shot.yaml:1:1: error: this is a reel (kadr-reel), and reels are not supported yet
+         R"(shot.yaml:1:12: error: this is a reel (kadr-reel), not a shot
     kadr-reel: 1
-    ^~~~~~~~~
-  render its shots one by one)"},
+               ^
+  expected a shot file here; `kadr render` and `kadr check` take reels, too)"},
         {std::string(kBase) + R"(name: a/b)",
          R"(shot.yaml:4:7: error: name is 'a/b'
     name: a/b

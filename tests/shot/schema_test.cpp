@@ -90,7 +90,7 @@ TEST(Schema, JsonHasEveryKey) {
     for (const FieldSpec& field : schema_table()) {
         const std::string path = field.path;
         const bool grammar = is_grammar(path.substr(0, path.find('.')));
-        if (grammar || path == "kadr-reel" || path.starts_with("render.samples."))
+        if (grammar || path.starts_with("render.samples."))
             continue;  // no values of a shot that can be written
         const nlohmann::json* at = &schema;
         for (std::size_t begin = 0; at && begin <= path.size();) {
