@@ -89,19 +89,36 @@ Arguments color_tags(const VideoPlan& plan) {
     return {"-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-color_range", full_range ? "pc" : "tv"};
 }
 
+Arguments sound_input(const VideoPlan& plan) {
+    if (!plan.sound) return {};
+    Arguments words;
+    if (plan.sound->sound.loop) words = {"-stream_loop", "-1"};
+    words.insert(words.end(), {"-i", "file:" + plan.sound->sound.file.string(), "-map", "0:v:0", "-map", "1:a:0"});
+    return words;
+}
+
+Arguments sound_output(const VideoPlan& plan) {
+    if (!plan.sound) return {};
+    Arguments words{"-af", sound_filter(*plan.sound), "-c:a", plan.sound->encoder, "-flags:a", "+bitexact"};
+    if (plan.sound->kilobits > 0) words.insert(words.end(), {"-b:a", fmt::format("{}k", plan.sound->kilobits)});
+    return words;
+}
+
 Arguments command_line(const VideoPlan& plan, const fs::path& file) {
     const std::string rate = fmt::format("{}/{}", plan.fps.numerator, plan.fps.denominator);
     Arguments words{plan.ffmpeg.string(), "-hide_banner", "-nostdin", "-nostats", "-v", "error", "-y",
                     "-f", "rawvideo", "-pixel_format", is_deep(plan.pixel_format) ? "rgb48le" : "rgb24",
-                    "-video_size", fmt::format("{}x{}", plan.width, plan.height), "-framerate", rate, "-i", "pipe:0",
-                    "-vf", video_filter(plan), "-c:v", plan.encoder};
+                    "-video_size", fmt::format("{}x{}", plan.width, plan.height), "-framerate", rate, "-i", "pipe:0"};
     const auto append = [&](const Arguments& more) { words.insert(words.end(), more.begin(), more.end()); };
+    append(sound_input(plan));
+    append({"-vf", video_filter(plan), "-c:v", plan.encoder});
     append(encoder_arguments(plan.encoder));
     if (plan.crf) append({"-crf", std::to_string(*plan.crf)});
     if (plan.codec != VideoCodec::gif) append({"-pix_fmt", plan.pixel_format});
     append(color_tags(plan));
     // No dates and no library versions: the same frames give the same file.
     append({"-r", rate, "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"});
+    append(sound_output(plan));
     append(muxer_arguments(plan.file));
     // A protocol in front, or a name with a colon would be taken for one.
     words.push_back("file:" + file.string());

@@ -7,6 +7,7 @@
 
 #include "anim/timing.h"
 #include "film/film.h"
+#include "output/sound_plan.h"
 #include "shot/shot.h"
 
 namespace kadr {
@@ -21,12 +22,19 @@ struct VideoPlan {
     int width = 0, height = 0;
     Rational fps;
     std::filesystem::path ffmpeg;   ///< the program
+    std::optional<SoundPlan> sound; ///< filled in by plan_sound
+};
+
+/// How messages call the keys that the size and the rate come from: those of a shot, or of a reel.
+struct VideoKeys {
+    const char* size = "image.size";
+    const char* fps = "timing.fps";
 };
 
 /// Checks all that can be known before the first frame: ffmpeg's presence, the encoder, the pixel format, even sizes for
 /// 4:2:0, the extension. ffmpeg's probe is cached (KADR_CACHE, else XDG_CACHE_HOME, else ~/.cache, folder kadr).
 /// @throws InputError  with the remedy
-VideoPlan plan_video(const VideoSpec& spec, int width, int height, Rational fps);
+VideoPlan plan_video(const VideoSpec& spec, int width, int height, Rational fps, const VideoKeys& keys = {});
 
 /// ffmpeg as a child process that is fed raw frames.
 class Encoder {

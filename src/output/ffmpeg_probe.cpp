@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // First line of a cache file; a new number makes old files unread.
-constexpr const char* kCacheFormat = "kadr ffmpeg probe 1";
+constexpr const char* kCacheFormat = "kadr ffmpeg probe 2";
 constexpr const char* kEncoders = "encoders";
 
 /// A variable's value; an empty one counts as unset.
@@ -50,14 +50,15 @@ std::vector<std::string> words_of(const std::string& line) {
     return words;
 }
 
-/// The second word of lines such as " V....D libx264  H.264 ..."; those above the line of dashes explain the letters.
+/// The second word of lines such as " V....D libx264  H.264 ...", of video and sound; those above the line of dashes explain the letters.
 std::vector<std::string> parse_encoders(const std::string& text) {
     std::vector<std::string> names;
     std::istringstream lines(text);
     bool listing = false;
     for (std::string line; std::getline(lines, line);) {
         const std::vector<std::string> words = words_of(line);
-        if (listing && words.size() >= 2 && words[0].starts_with('V')) names.push_back(words[1]);
+        const bool wanted = listing && words.size() >= 2 && (words[0].starts_with('V') || words[0].starts_with('A'));
+        if (wanted) names.push_back(words[1]);
         if (words.size() == 1 && words[0].starts_with("---")) listing = true;
     }
     return names;

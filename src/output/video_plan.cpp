@@ -70,7 +70,8 @@ constexpr Subsampling kSubsamplings[] = {{"420", "4:2:0", 2, 2}, {"nv12", "4:2:0
 
 class Planner {
 public:
-    Planner(const VideoSpec& spec, int width, int height, Rational fps) : spec_(spec), width_(width), height_(height), fps_(fps) {}
+    Planner(const VideoSpec& spec, int width, int height, Rational fps, const VideoKeys& keys)
+        : spec_(spec), width_(width), height_(height), fps_(fps), keys_(keys) {}
 
     VideoPlan plan() const {
         const CodecRow& codec = choose_codec();
@@ -82,7 +83,7 @@ public:
         FfmpegProbe probe(find_ffmpeg());
         const std::string encoder = choose_encoder(codec, probe);
         check_pixel_format(encoder, pixel_format, probe);
-        VideoPlan plan{spec_.file, codec.codec, encoder, pixel_format, spec_.crf, width_, height_, fps_, probe.program()};
+        VideoPlan plan{spec_.file, codec.codec, encoder, pixel_format, spec_.crf, width_, height_, fps_, probe.program(), {}};
         if (!plan.crf && codec.default_crf != kNoCrf) plan.crf = codec.default_crf;
         return plan;
     }
@@ -134,8 +135,8 @@ private:
         // A GIF counts hundredths of a second, and players slow down what is faster than two of them.
         constexpr int kFastestGif = 50;
         if (codec.codec == VideoCodec::gif && fps_.value() > kFastestGif)
-            fail(fmt::format("timing.fps is {}, but a GIF plays at most {} frames a second", fps_.value(), kFastestGif),
-                 "use another container, such as .mp4, or a lower timing.fps");
+            fail(fmt::format("{} is {}, but a GIF plays at most {} frames a second", keys_.fps, fps_.value(), kFastestGif),
+                 fmt::format("use another container, such as .mp4, or a lower {}", keys_.fps));
     }
 
     void check_size(const std::string& pixel_format) const {
@@ -146,9 +147,9 @@ private:
         const char* sides = row->x > 1 && row->y > 1 ? "width and height" : row->x > 1 ? "width" : "height";
         const int step = std::max(row->x, row->y);
         const auto up = [](int value, int multiple) { return (value + multiple - 1) / multiple * multiple; };
-        fail(fmt::format("image.size is {} x {}, but {} video ({}) needs {} {}", width_, height_, row->name, pixel_format,
+        fail(fmt::format("{} is {} x {}, but {} video ({}) needs {} {}", keys_.size, width_, height_, row->name, pixel_format,
                          step == 2 ? "an even" : "a multiple of 4 as", sides),
-             fmt::format("use image.size: [{}, {}], or output.video.pixel_format: yuv444p", up(width_, row->x), up(height_, row->y)));
+             fmt::format("use {}: [{}, {}], or output.video.pixel_format: yuv444p", keys_.size, up(width_, row->x), up(height_, row->y)));
     }
 
     std::filesystem::path find_ffmpeg() const {
@@ -167,7 +168,7 @@ private:
             else smallest = choice.smallest;
         }
         if (smallest > 0)
-            fail(fmt::format("image.size is {} x {}, too small for {}", width_, height_, codec.name),
+            fail(fmt::format("{} is {} x {}, too small for {}", keys_.size, width_, height_, codec.name),
                  fmt::format("expected at least {} x {}; use a larger size or another output.video.codec", smallest, smallest));
         fail(fmt::format("the installed ffmpeg ({}) has no encoder {}", probe.program().string(), fmt::join(missing, " or ")),
              fmt::format("install an ffmpeg that has it, or use another output.video.codec than {}", codec.name));
@@ -183,12 +184,13 @@ private:
     const VideoSpec& spec_;
     const int width_, height_;
     const Rational fps_;
+    const VideoKeys keys_;
 };
 
 }  // namespace
 
-VideoPlan plan_video(const VideoSpec& spec, int width, int height, Rational fps) {
-    return Planner(spec, width, height, fps).plan();
+VideoPlan plan_video(const VideoSpec& spec, int width, int height, Rational fps, const VideoKeys& keys) {
+    return Planner(spec, width, height, fps, keys).plan();
 }
 
 }  // namespace kadr
