@@ -11,6 +11,8 @@
 #include "cli/reporter.h"
 #include "device/device.h"
 #include "output/frame_writer.h"
+#include "render/reel_job.h"
+#include "render/reel_plan.h"
 #include "shot/shot_parser.h"
 
 namespace kadr {
@@ -26,11 +28,13 @@ std::string json_line(const nlohmann::ordered_json& value) {
 
 int run_render(const Invocation& invocation) {
     const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
-    reporter->summary(render_shot(invocation.render, reporter->events()));
+    const auto render = is_reel(invocation.render.shot) ? render_reel : render_shot;
+    reporter->summary(render(invocation.render, reporter->events()));
     return kDone;
 }
 
 int run_preview(const Invocation& invocation) {
+    if (is_reel(invocation.preview.render.shot)) refuse_reel_preview(invocation.preview);
     const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, invocation.stats);
     RenderEvents events = reporter->events();
     if (!invocation.json && !invocation.stats) events.frame_done = [](const FrameReport&) {};  // the line below says it
@@ -53,7 +57,8 @@ int run_check(const Invocation& invocation) {
     std::vector<Diagnostic> problems;
     for (const std::filesystem::path& shot : invocation.shots) {
         try {
-            const CheckReport report = check_shot(shot, invocation.render.overrides, invocation.verbose);
+            const auto check = is_reel(shot) ? check_reel : check_shot;
+            const CheckReport report = check(shot, invocation.render.overrides, invocation.verbose);
             for (const Diagnostic& warning : report.warnings) reporter->warning(warning);
             print_checked(invocation, shot, report);
         } catch (const InputError& error) {
@@ -65,13 +70,14 @@ int run_check(const Invocation& invocation) {
 }
 
 int run_describe(const Invocation& invocation) {
-    std::string text = invocation.json_schema ? schema_as_json() : describe_schema(invocation.key);
+    std::string text = invocation.json_schema ? schema_as_json(invocation.key) : describe_schema(invocation.key);
     if (text.empty() || text.back() != '\n') text += '\n';
     print(text);
     return kDone;
 }
 
 std::string smoke_line(const SmokeCase& result) {
+    if (!result.skipped.empty()) return fmt::format("skip   {}: {}\n", result.shot, result.skipped);
     const std::string compared =
         result.compared ? fmt::format(", FLIP {:.4f} of {:.4f}", result.flip, result.tolerance) : std::string();
     std::string line = fmt::format("{} {} frame {}{}{}\n", result.failures.empty() ? "ok    " : "FAILED", result.shot,

@@ -31,9 +31,10 @@ std::string frame_line(const FrameReport& report) {
     const std::string file = report.files.empty() ? std::string() : report.files.front().string();
     if (!report.preview.empty())
         return fmt::format("{} of {} frames: {} in {}", report.preview, report.frames.size(), file, readable_time(report.seconds));
-    if (report.reused) return fmt::format("frame {}: reused {}", report.frame, file);
-    if (report.same_as) return fmt::format("frame {}: {} is the same as frame {}", report.frame, file, *report.same_as);
-    return fmt::format("frame {}: {} in {}", report.frame, file, readable_time(report.seconds));
+    const std::string name = report.shot.empty() ? fmt::format("frame {}", report.frame) : fmt::format("{} frame {}", report.shot, report.frame);
+    if (report.reused) return fmt::format("{}: reused {}", name, file);
+    if (report.same_as) return fmt::format("{}: {} is the same as frame {}", name, file, *report.same_as);
+    return fmt::format("{}: {} in {}", name, file, readable_time(report.seconds));
 }
 
 std::string stats_line(const FrameReport& report) {
@@ -60,9 +61,15 @@ std::string summary_text(const RenderSummary& summary) {
                                    times.trace, times.write, times.encode);
     text += fmt::format("{:.2f} million samples/s, peak memory {}\n", summary.samples_per_s / 1e6,
                         readable_bytes(summary.peak_memory_bytes));
+    if (summary.shots > 0) text += fmt::format("reel: {} shots, {} frames, {:.2f} s\n", summary.shots, summary.reel_frames, summary.reel_s);
     text += fmt::format("device: {}{}\n", summary.device, summary.device_why.empty() ? "" : "; " + summary.device_why);
     if (!summary.video.empty()) text += fmt::format("video: {}\n", summary.video.string());
     return text;
+}
+
+std::string shot_line(const ShotStart& shot) {
+    if (shot.number == 0) return fmt::format("reel {}: {} frames from {} shots", shot.name, shot.frames, shot.count);
+    return fmt::format("shot {} of {}: {}, {} frames", shot.number, shot.count, shot.name, shot.frames);
 }
 
 void print(std::FILE* stream, const std::string& text) {
@@ -76,6 +83,7 @@ public:
     explicit PlainReporter(bool stats) : stats_(stats) {}
     void warning(const Diagnostic& warning) override { print(stderr, warning.text() + "\n"); }
     void progress(int, double, int) override {}
+    void shot_started(const ShotStart& shot) override { print(stdout, shot_line(shot) + "\n"); }
     void frame_done(const FrameReport& report) override {
         print(stdout, frame_line(report) + "\n");
         if (stats_ && !report.reused && !report.same_as) print(stdout, stats_line(report) + "\n");
@@ -102,6 +110,10 @@ public:
         if (now - drawn_ < std::chrono::duration<double>(kBarInterval_s)) return;
         drawn_ = now;
         draw(frame, fraction, frames_left);
+    }
+    void shot_started(const ShotStart& shot) override {
+        const std::lock_guard lock(mutex_);
+        shot_ = shot.name + " ";
     }
     void frame_done(const FrameReport& report) override {
         if (stats_) {
@@ -135,7 +147,7 @@ private:
     void draw(int frame, double fraction, int frames_left) {
         const double left = remaining_s(fraction, frames_left);
         const int filled = static_cast<int>(fraction * kBarWidth);
-        print(stderr, fmt::format("\r\033[Kframe {} [{}{}] {:3.0f} %  {} left  ETA {}  {}", frame, std::string(filled, '#'),
+        print(stderr, fmt::format("\r\033[K{}frame {} [{}{}] {:3.0f} %  {} left  ETA {}  {}", shot_, frame, std::string(filled, '#'),
                                   std::string(kBarWidth - filled, '.'), fraction * 100, frames_left,
                                   left < 0 ? "-" : readable_time(left), readable_bytes(current_memory_bytes())));
         shown_ = true;
@@ -145,6 +157,7 @@ private:
     std::mutex mutex_;
     Clock::time_point drawn_{}, begin_{};
     double begin_at_ = 0;
+    std::string shot_;   ///< "spin " in a reel
     bool paced_ = false, shown_ = false;
 };
 
@@ -198,12 +211,20 @@ public:
         line({{"event", "progress"}, {"frame", frame}, {"fraction", fraction}, {"frames_left", frames_left},
               {"memory_bytes", current_memory_bytes()}});
     }
+    void shot_started(const ShotStart& shot) override {
+        line({{"event", "shot"}, {"shot", shot.name}, {"number", shot.number}, {"count", shot.count}, {"frames", shot.frames}});
+    }
     void frame_done(const FrameReport& report) override {
         Json frame = frame_json(report);
+        if (!report.shot.empty()) frame["shot"] = report.shot;
         if (stats_) frame["device"] = statistics_json(report.device);
         line(frame);
     }
-    void summary(const RenderSummary& summary) override { line(summary_json(summary)); }
+    void summary(const RenderSummary& summary) override {
+        Json json = summary_json(summary);
+        if (summary.shots > 0) json.update({{"shots", summary.shots}, {"reel_frames", summary.reel_frames}, {"reel_s", summary.reel_s}});
+        line(json);
+    }
 
 private:
     void line(const Json& value) {
@@ -224,6 +245,7 @@ RenderEvents Reporter::events() {
     RenderEvents events;
     events.warning = [this](const Diagnostic& diagnostic) { warning(diagnostic); };
     events.frame_progress = [this](int frame, double fraction, int left) { progress(frame, fraction, left); };
+    events.shot_started = [this](const ShotStart& shot) { shot_started(shot); };
     events.frame_done = [this](const FrameReport& report) { frame_done(report); };
     return events;
 }

@@ -17,6 +17,7 @@
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
 #include "render/output_plan.h"
+#include "render/prepared_shot.h"
 #include "render/stopwatch.h"
 #include "shot/shot_parser.h"
 
@@ -51,7 +52,7 @@ int first_frame_of_shot(const RenderOptions& options, const LoadedShot& loaded) 
 /// One call of render_shot: members in the order in which they come to be.
 class RenderJob {
 public:
-    RenderJob(const RenderOptions& options, const RenderEvents& events);
+    RenderJob(PreparedShot prepared, const RenderOptions& options, const RenderEvents& events);
     RenderSummary run();
 
 private:
@@ -68,6 +69,7 @@ private:
 
     const RenderOptions& options_;
     const RenderEvents& events_;
+    const bool view_wanted_;
     Stopwatch total_;
     RenderSummary summary_;
     std::optional<LoadedShot> loaded_;
@@ -82,15 +84,16 @@ private:
     std::optional<Delivery> delivery_;
 };
 
-RenderJob::RenderJob(const RenderOptions& options, const RenderEvents& events) : options_(options), events_(events) {
-    Shot shot = parse_shot(options.shot, options.overrides);
-    add_default_video(shot, options.default_video);
+RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const RenderEvents& events)
+    : options_(options), events_(events), view_wanted_(prepared.view_wanted) {
+    Shot& shot = prepared.shot;
     device_ = make_device(options.device);
     open_image_io_in_background();
     if (shot.output.video)
         video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
     loaded_.emplace(std::move(shot));
-    metered_frame_ = loaded_->shot().view.automatic ? first_frame_of_shot(options, *loaded_) : 0;
+    if (loaded_->shot().view.automatic)
+        metered_frame_ = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
     identity_.emplace(*loaded_, metered_frame_);
     renderer_.emplace(*device_.device);
     summary_.device = device_.device->name();
@@ -189,8 +192,9 @@ void RenderJob::deliver(int frame, int frames_left) {
     item.report.reused = !options_.overwrite && is_complete(item.report.files, item.identity);
     if (!item.report.reused)
         render(item, time, frames_left);
-    else if (video_ && is_linear_file(video_source(item.report.files)))
+    else if ((video_ || view_wanted_) && is_linear_file(video_source(item.report.files)))
         item.view = view_with_exposure();
+    summary_.view = item.view;
     ++summary_.frames;
     summary_.reused += item.report.reused;
     delivery_->push(std::move(item));
@@ -251,7 +255,14 @@ RenderSummary RenderJob::run() {
 }  // namespace
 
 RenderSummary render_shot(const RenderOptions& options, const RenderEvents& events) {
-    return RenderJob(options, events).run();
+    PreparedShot prepared;
+    prepared.shot = parse_shot(options.shot, options.overrides);
+    add_default_video(prepared.shot, options.default_video);
+    return render_prepared(std::move(prepared), options, events);
+}
+
+RenderSummary render_prepared(PreparedShot shot, const RenderOptions& options, const RenderEvents& events) {
+    return RenderJob(std::move(shot), options, events).run();
 }
 
 }  // namespace kadr

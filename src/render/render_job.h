@@ -26,6 +26,7 @@ struct RenderOptions {
 struct StageTimes { double load = 0, scene = 0, trace = 0, write = 0, encode = 0, total = 0; };
 
 struct FrameReport {
+    std::string shot;                ///< whose frame it is, in a reel
     int frame = 0;
     bool reused = false;             ///< complete on disk, made from the same inputs
     std::optional<int> same_as;      ///< number of the frame of this run whose pixels these are: nothing differs over the shutter
@@ -49,13 +50,25 @@ struct RenderSummary {
     std::size_t peak_memory_bytes = 0;
     std::string device, device_why;
     std::filesystem::path video;
+    ViewSpec view;                   ///< of the last frame, its exposure filled in
+    int shots = 0;                   ///< of a reel; 0: a shot was rendered
+    int reel_frames = 0;
+    double reel_s = 0;               ///< seconds that the reel lasts
     std::vector<Diagnostic> warnings;
+};
+
+/// A shot of a reel, or the reel itself, whose frames come next.
+struct ShotStart {
+    std::string name;
+    int number = 1, count = 1;       ///< the how many-eth of how many shots; 0: the reel itself
+    int frames = 0;
 };
 
 /// Who watches: a progress bar, plain lines or JSON lines. Called from the rendering thread, but for frame_progress.
 struct RenderEvents {
     std::function<void(const Diagnostic&)> warning = [](const Diagnostic&) {};
     std::function<void(int frame, double fraction, int frames_left)> frame_progress = [](int, double, int) {};
+    std::function<void(const ShotStart&)> shot_started = [](const ShotStart&) {};   ///< of reels alone
     std::function<void(const FrameReport&)> frame_done = [](const FrameReport&) {};
 };
 

@@ -16,6 +16,7 @@
 #include "render/frame_renderer.h"
 #include "render/image_checks.h"
 #include "render/loaded_shot.h"
+#include "render/reel_plan.h"
 #include "render/stopwatch.h"
 #include "shot/shot_parser.h"
 
@@ -161,8 +162,18 @@ std::string all_texts(const InputError& error) {
     return text;
 }
 
+/// A reel is checked; its pictures are those of its shots.
+SmokeCase checked_reel(const fs::path& file) {
+    check_reel(file, {});
+    SmokeCase result;
+    result.shot = file.string();
+    result.skipped = "a reel: it is checked, and its shots are rendered as files of their own";
+    return result;
+}
+
 void smoke_one(const fs::path& file, const SmokeOptions& options, const std::function<void(SmokeCase)>& add) {
     try {
+        if (is_reel(file)) return add(checked_reel(file));
         SmokeShot shot(file, options.device);
         for (const int frame : shot.frames()) add(shot.run(frame, options.update));
     } catch (const InputError& error) {
@@ -190,6 +201,7 @@ std::string junit_case(const SmokeCase& result) {
                                   xml_escaped(result.shot), result.frame, result.seconds);
     for (const std::string& failure : result.failures)
         xml += fmt::format("    <failure message=\"{}\"/>\n", xml_escaped(failure));
+    if (!result.skipped.empty()) xml += fmt::format("    <skipped message=\"{}\"/>\n", xml_escaped(result.skipped));
     return xml + "  </testcase>\n";
 }
 

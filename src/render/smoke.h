@@ -20,6 +20,7 @@ struct SmokeCase {
     std::string shot;                ///< name; the file's when it could not be read
     int frame = 0;
     std::vector<std::string> failures;  ///< none: passed
+    std::string skipped;             ///< why nothing of it is rendered: it is a reel
     bool bad_input = false;          ///< the shot itself is at fault (exit code 2)
     bool compared = false;           ///< there was a golden image
     bool updated = false;
