@@ -70,13 +70,46 @@ void check_lens(const Shot& shot, std::vector<Diagnostic>& problems) {
                                       "expected a distance or a node in camera.focus: an authored camera has no look_at to focus on"));
 }
 
+/// What an entry of `scenes` means for its file. Each of its steps can fail without hiding what others find.
+BoundScene bind_scene(const Scene& scene, int file, const SceneSpec& spec, std::vector<Diagnostic>& problems) {
+    BoundScene bound;
+    for (const ClipLayer& layer : spec.layers)
+        collect(problems, [&] {
+            std::vector<int> clips = playing_clips(scene, file, layer);
+            if (!clips.empty()) bound.layers.push_back(make_layer(layer, std::move(clips), scene));
+        });
+    for (const NodeOverride& node : spec.nodes) collect(problems, [&] { bound.overrides.push_back({resolve_node(scene, file, {node.name, node.where}), &node}); });
+    for (const NamedAt& name : spec.hide)
+        collect(problems, [&] {
+            const std::vector<int> nodes = resolve_nodes(scene, file, name);
+            bound.hidden.insert(bound.hidden.end(), nodes.begin(), nodes.end());
+        });
+    return bound;
+}
+
+void check_overrides(const Scene& scene, int file, const BoundScene& bound, std::vector<Diagnostic>& problems) {
+    std::map<int, const NodeOverride*> seen;
+    for (const BoundScene::Override& node : bound.overrides)
+        if (const auto [first, fresh] = seen.emplace(node.node, node.spec); !fresh)
+            problems.push_back(problem_at(node.spec->where, fmt::format("'{}' and '{}' are the same node, {}", first->second->name, node.spec->name, node_path(scene, file, node.node)),
+                                          "expected each node once"));
+}
+
+void check_camera(const Shot& shot, const Scene& scene, const std::vector<BoundScene>& scenes, int camera, std::vector<Diagnostic>& problems) {
+    for (std::size_t f = 0; f < scenes.size(); ++f)
+        for (int above = camera; above >= 0; above = scene.nodes[static_cast<std::size_t>(above)].parent)
+            if (std::find(scenes[f].hidden.begin(), scenes[f].hidden.end(), above) != scenes[f].hidden.end()) {
+                problems.push_back(problem_at(shot.camera.gltf->where, fmt::format("camera.gltf is '{}', which scenes.{}.hide leaves out", shot.camera.gltf->text, scene.files[f].id),
+                                              fmt::format("expected a camera that is there; take '{}' out of the list", scene.nodes[static_cast<std::size_t>(above)].name)));
+                return;
+            }
+}
+
 /// Seconds of shot time at which the last clip has come to its end; 0 without clips.
-double longest_clip_s(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips) {
+double longest_clip_s(const std::vector<BoundScene>& scenes) {
     double longest = 0;
-    for (std::size_t f = 0; f < clips.size(); ++f)
-        for (const int clip : clips[f])
-            if (shot.scenes[f].clip_speed > 0)
-                longest = std::max(longest, (scene.clips[static_cast<std::size_t>(clip)].end_s - shot.scenes[f].clip_start_s) / shot.scenes[f].clip_speed);
+    for (const BoundScene& scene : scenes)
+        for (const PlayingLayer& layer : scene.layers) longest = std::max(longest, layer.end_s());
     return longest;
 }
 
@@ -163,22 +196,26 @@ glm::dmat4 Bindings::node_from_geometry(const Scene& scene, const InstanceSeed& 
 
 BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene_(&scene), sequence_({}, {}) {
     std::vector<Diagnostic> problems;
-    std::vector<std::vector<int>> clips(scene.files.size());
+    std::vector<BoundScene> scenes;
     std::map<std::string, ResolvedReference> references;
     int camera_node = -1;
-    for (std::size_t f = 0; f < scene.files.size(); ++f)
-        collect(problems, [&] { clips[f] = playing_clips(scene, f, shot.scenes.at(f)); });
+    for (std::size_t f = 0; f < scene.files.size(); ++f) {
+        scenes.push_back(bind_scene(scene, static_cast<int>(f), shot.scenes.at(f), problems));
+        check_overrides(scene, static_cast<int>(f), scenes.back(), problems);
+    }
     for (std::size_t f = 0; f < scene.files.size(); ++f) collect(problems, [&] { check_appearance(scene, f, shot.scenes.at(f)); });
     for (const NodeReference& reference : references_of(shot))
         collect(problems, [&] { references[reference.text] = resolve(scene, reference); });
     if (shot.camera.gltf) collect(problems, [&] { camera_node = resolve_camera(scene, *shot.camera.gltf); });
+    check_camera(shot, scene, scenes, camera_node, problems);
     check_integrator(shot, problems);
     check_lens(shot, problems);
-    collect(problems, [&] { timing_ = with_frames(shot, longest_clip_s(shot, scene, clips)); });
+    collect(problems, [&] { timing_ = with_frames(shot, longest_clip_s(scenes)); });
     if (!problems.empty()) throw InputError(std::move(problems));
 
     sequence_ = Sequence(timing_, shot.shutter);
-    auto bindings = std::make_shared<Bindings>(Bindings{NodeRig(shot, scene, clips), std::move(references), {}, {}, camera_node, PropertyRig(shot, scene, clips), {}, {}, MorphRig(shot, scene, clips), {}});
+    auto bindings = std::make_shared<Bindings>(
+        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
     bindings->visibility = VisibilityRig(shot, scene, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);

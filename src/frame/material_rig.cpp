@@ -158,7 +158,8 @@ int MaterialRig::material_of(int entry, const MeshPrimitive& primitive) const {
 
 kernels::Material MaterialRig::evaluate(const Own& own, double time_s) const {
     Factors factors{scene_->materials[index(own.original)], scene_->material_sources[index(own.original)]};
-    for (const DrivenProperty& driven : own.driven) factors.set(driven, time_s);
+    for (const DrivenProperty& driven : own.driven)
+        if (driven.plays(time_s)) factors.set(driven, time_s);
     if (own.blends && factors.material.alpha_mode == kernels::AlphaMode::opaque) factors.material.alpha_mode = kernels::AlphaMode::blend;
     return factors.made();
 }

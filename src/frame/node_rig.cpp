@@ -12,50 +12,36 @@ namespace kadr {
 
 namespace {
 
-glm::dmat4 from_parts(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
-    return compose({glm::normalize(rotation), scale, glm::dvec3(0), translation});
-}
-
 void append(std::vector<double>& all, const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); }
+
+glm::dmat4 own_transform(const Node& node) {
+    return node.matrix ? *node.matrix : compose({glm::normalize(node.rotation), node.scale, glm::dvec3(0), node.translation});
+}
 
 }  // namespace
 
-NodeRig::NodeRig(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips) : scene_(&scene) {
-    const std::size_t count = scene.nodes.size();
-    file_.assign(count, -1);
+NodeRig::NodeRig(const Shot& shot, const Scene& scene, const std::vector<BoundScene>& scenes) : scene_(&scene) {
+    file_.assign(scene.nodes.size(), -1);
     for (std::size_t f = 0; f < scene.files.size(); ++f) {
-        const SceneSpec& spec = shot.scenes.at(f);
-        files_.push_back({&spec.transform, varies(spec.transform), spec.clip_start_s, spec.clip_speed});
+        const TransformTrack& transform = shot.scenes.at(f).transform;
+        files_.push_back({&transform, varies(transform), static_cast<int>(layers_.size()), static_cast<int>(scenes[f].layers.size())});
+        layers_.insert(layers_.end(), scenes[f].layers.begin(), scenes[f].layers.end());
         std::fill_n(file_.begin() + scene.files[f].first_node, scene.files[f].node_count, static_cast<int>(f));
     }
-    animated_index_.assign(count, -1);
-    bind_clips(clips);
-    order_nodes();
-    moving_.assign(count, false);
-    local_.assign(count, glm::dmat4(1));
-    world_.assign(count, glm::dmat4(1));
-    for (const int node : order_) {
-        const int parent = scene.nodes[index(node)].parent;
-        moving_[index(node)] = animates(node) || (parent >= 0 ? moving_[index(parent)] : files_[index(file_[index(node)])].moves);
-        local_[index(node)] = local_transform(node, 0, 0);
-        const glm::dmat4 above = parent >= 0 ? world_[index(parent)] : scene_transform(file_[index(node)], 0);
-        world_[index(node)] = above * local_[index(node)];
-    }
+    order_nodes(scenes);
+    bind_layers(scenes);
+    place_nodes();
 }
 
-bool NodeRig::animates(int node) const {
-    const int slot = animated_index_[index(node)];
-    if (slot < 0) return false;
-    const Animated& a = animated_[index(slot)];
-    return a.translation_track || a.rotation_track || a.scale_track;
-}
-
-void NodeRig::order_nodes() {
+void NodeRig::order_nodes(const std::vector<BoundScene>& scenes) {
     const std::size_t count = scene_->nodes.size();
     rank_.assign(count, 0);
     reachable_.assign(count, false);
+    hidden_.assign(count, false);
     for (const SceneFile& file : scene_->files)
         for (const int root : file.roots) reachable_[index(root)] = true;
+    for (const BoundScene& scene : scenes)
+        for (const int node : scene.hidden) hidden_[index(node)] = true;
     std::vector<int> open;
     for (std::size_t node = count; node-- > 0;)
         if (scene_->nodes[node].parent < 0) open.push_back(static_cast<int>(node));
@@ -66,62 +52,90 @@ void NodeRig::order_nodes() {
         order_.push_back(node);
         const int parent = scene_->nodes[index(node)].parent;
         if (parent >= 0 && reachable_[index(parent)]) reachable_[index(node)] = true;
+        if (parent >= 0 && hidden_[index(parent)]) hidden_[index(node)] = true;
         const auto& children = scene_->nodes[index(node)].children;
         open.insert(open.end(), children.rbegin(), children.rend());
     }
+    for (std::size_t node = 0; node < count; ++node)
+        if (hidden_[node]) reachable_[node] = false;
 }
 
-void NodeRig::bind_clips(const std::vector<std::vector<int>>& clips) {
-    for (const std::vector<int>& playing : clips)
-        for (const int clip : playing)
-            for (const NodeChannels& channels : scene_->clips[index(clip)].channels) bind_channels(channels);
-}
-
-void NodeRig::bind_channels(const NodeChannels& channels) {
-    const Node& node = scene_->nodes[index(channels.node)];
-    int& slot = animated_index_[index(channels.node)];
+NodePose& NodeRig::pose_of(int node) {
+    int& slot = pose_index_[index(node)];
     if (slot < 0) {
-        slot = static_cast<int>(animated_.size());
-        Animated rest;
-        if (node.matrix) {  // glTF forbids it; the parts of the matrix are what the channels can replace
-            const Decomposition parts = decompose(*node.matrix);
-            rest.translation = parts.translation, rest.rotation = parts.rotation, rest.scale = parts.scale;
-        } else {
-            rest.translation = node.translation, rest.rotation = node.rotation, rest.scale = node.scale;
-        }
-        animated_.push_back(rest);
+        slot = static_cast<int>(poses_.size());
+        poses_.push_back(rest_pose(scene_->nodes[index(node)]));
     }
-    Animated& animated = animated_[index(slot)];
-    const bool runs = files_[index(file_[index(channels.node)])].speed != 0;
-    const double start = files_[index(file_[index(channels.node)])].start_s;
-    const auto bind = [&](const auto& track, auto& constant, auto& bound) {
-        if (!track || track->keys.empty()) return;
-        const bool moves = runs && varies(*track);
-        bound = moves ? &*track : nullptr;
-        if (!moves) constant = kadr::evaluate(*track, start);
-    };
-    bind(channels.translation, animated.translation, animated.translation_track);
-    bind(channels.rotation, animated.rotation, animated.rotation_track);
-    bind(channels.scale, animated.scale, animated.scale_track);
+    return poses_[index(slot)];
+}
+
+void NodeRig::bind_layers(const std::vector<BoundScene>& scenes) {
+    pose_index_.assign(scene_->nodes.size(), -1);
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer)
+        for (const int clip : layers_[layer].clips) bind_clip(scene_->clips[index(clip)], static_cast<int>(layer));
+    for (const BoundScene& scene : scenes)
+        for (const BoundScene::Override& node : scene.overrides) apply(pose_of(node.node), *node.spec);
+    jumps_at_seam_.assign(layers_.size(), false);
+    for (std::size_t node = 0; node < scene_->nodes.size(); ++node) {
+        if (pose_index_[node] < 0) continue;
+        NodePose& pose = poses_[index(pose_index_[node])];
+        simplify(pose.translation, layers_);
+        simplify(pose.rotation, layers_);
+        simplify(pose.scale, layers_);
+        if (!reachable_[node]) continue;
+        note_jumps(pose.translation, vector_steps_);
+        note_jumps(pose.scale, vector_steps_);
+        note_jumps(pose.rotation, rotation_steps_);
+    }
+}
+
+void NodeRig::bind_clip(const Clip& clip, int layer) {
+    for (const NodeChannels& channels : clip.channels) {
+        NodePose& pose = pose_of(channels.node);
+        if (channels.translation) add_part(pose.translation, layer, *channels.translation);
+        if (channels.rotation) add_part(pose.rotation, layer, *channels.rotation);
+        if (channels.scale) add_part(pose.scale, layer, *channels.scale);
+    }
+}
+
+template <class T>
+void NodeRig::note_jumps(const LayeredTrack<T>& track, std::vector<StepTrack<T>>& steps) {
+    for (const auto& part : track.parts) {
+        if (kadr::jumps_at_seam(*part.track, layers_[index(part.layer)])) jumps_at_seam_[index(part.layer)] = true;
+        if (part.track->interpolation == Interpolation::step) steps.push_back({part.layer, part.track});
+    }
+}
+
+void NodeRig::place_nodes() {
+    const std::size_t count = scene_->nodes.size();
+    moving_.assign(count, false);
+    local_.assign(count, glm::dmat4(1));
+    world_.assign(count, glm::dmat4(1));
+    for (const int node : order_) {
+        const int parent = scene_->nodes[index(node)].parent;
+        moving_[index(node)] = moves_itself(node) || (parent >= 0 ? moving_[index(parent)] : files_[index(file_[index(node)])].moves);
+        local_[index(node)] = local_transform(node, 0, 0);
+        const glm::dmat4 above = parent >= 0 ? world_[index(parent)] : scene_transform(file_[index(node)], 0);
+        world_[index(node)] = above * local_[index(node)];
+    }
+}
+
+bool NodeRig::moves_itself(int node) const {
+    const int pose = pose_index_[index(node)];
+    return pose >= 0 && poses_[index(pose)].moves();
 }
 
 glm::dmat4 NodeRig::scene_transform(int file, double time_s) const { return kadr::evaluate(*files_[index(file)].transform, time_s); }
 
 glm::dmat4 NodeRig::local_transform(int node, double time_s, double clip_offset_s) const {
-    const int slot = animated_index_[index(node)];
-    const Node& source = scene_->nodes[index(node)];
-    if (slot < 0) return source.matrix ? *source.matrix : from_parts(source.translation, source.rotation, source.scale);
-    const Animated& a = animated_[index(slot)];
-    const double time = files_[index(file_[index(node)])].clip_time(time_s, clip_offset_s);
-    return from_parts(a.translation_track ? kadr::evaluate(*a.translation_track, time) : a.translation,
-                      a.rotation_track ? kadr::evaluate(*a.rotation_track, time) : a.rotation,
-                      a.scale_track ? kadr::evaluate(*a.scale_track, time) : a.scale);
+    const int pose = pose_index_[index(node)];
+    return pose < 0 ? own_transform(scene_->nodes[index(node)]) : poses_[index(pose)].at(layers_, time_s, clip_offset_s);
 }
 
 glm::dmat4 NodeRig::node_transform(int node, double time_s, double clip_offset_s) const {
     glm::dmat4 result(1);
     for (; moves(node); node = scene_->nodes[index(node)].parent) {
-        result = (animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)]) * result;
+        result = (moves_itself(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)]) * result;
         if (scene_->nodes[index(node)].parent < 0) return scene_transform(file_[index(node)], time_s) * result;
     }
     return world_[index(node)] * result;
@@ -134,7 +148,7 @@ std::vector<glm::dmat4> NodeRig::all_transforms(double time_s, double clip_offse
     for (const int node : order_) {
         if (!moves(node)) continue;
         const int parent = scene_->nodes[index(node)].parent;
-        const glm::dmat4 local = animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
+        const glm::dmat4 local = moves_itself(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
         world[index(node)] = (parent >= 0 ? world[index(parent)] : above[index(file_[index(node)])]) * local;
     }
     return world;
@@ -167,7 +181,7 @@ void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<gl
     glm::dmat4 above(1);
     for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
         const int node = selection.nodes[slot];
-        const glm::dmat4 local = animates(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
+        const glm::dmat4 local = moves_itself(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
         const int parent = scene_->nodes[index(node)].parent;
         if (selection.parent_slot[slot] >= 0) {
             world[slot] = world[index(selection.parent_slot[slot])] * local;
@@ -180,29 +194,20 @@ void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<gl
     }
 }
 
-NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s, double clip_offset_s) const {
+NodeRig::Activity NodeRig::own_activity(int node, LayerWindows windows, double begin_s, double end_s, double clip_offset_s) const {
     Activity own;
-    std::vector<double> times;  // in [0, 1] over the interval
-    const auto add_keys = [&](const std::vector<double>& keys, double from, double to) {
-        for (const double key : keys) times.push_back((key - from) / (to - from));
-    };
-    const FileMotion& file = files_[index(file_[index(node)])];
-    if (const int slot = animated_index_[index(node)]; slot >= 0) {
-        const Animated& a = animated_[index(slot)];
-        // A clip may run backwards: the tracks are asked over the interval in ascending order.
-        const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
-        const double low = std::min(from, to), high = std::max(from, to);
-        if (a.translation_track) add_keys(key_times(*a.translation_track, low, high), from, to);
-        if (a.scale_track) add_keys(key_times(*a.scale_track, low, high), from, to);
-        if (a.rotation_track) {
-            add_keys(key_times(*a.rotation_track, low, high), from, to);
-            own.turn_rad = turn_of(*a.rotation_track, low, high);
-        }
+    std::vector<double> times;
+    if (moves_itself(node)) {
+        const NodePose& pose = poses_[index(pose_index_[index(node)])];
+        pose.add_key_times(windows, begin_s, end_s, times);
+        own.turn_rad = pose.turn(layers_, windows, begin_s, end_s, clip_offset_s);
     }
+    const FileMotion& file = files_[index(file_[index(node)])];
     if (scene_->nodes[index(node)].parent < 0 && file.moves) {
-        add_keys(key_times(*file.transform, begin_s, end_s), begin_s, end_s);
+        append(times, key_times(*file.transform, begin_s, end_s));
         own.turn_rad += turn_of(*file.transform, begin_s, end_s);
     }
+    for (double& time : times) time = (time - begin_s) / (end_s - begin_s);
     own.keys = static_cast<int>(times.size());
     own.grid = even_segments_for(times);
     return own;
@@ -211,8 +216,9 @@ NodeRig::Activity NodeRig::own_activity(int node, double begin_s, double end_s, 
 std::vector<NodeRig::Activity> NodeRig::activity(const Selection& selection, double begin_s, double end_s, double clip_offset_s) const {
     std::vector<Activity> all;
     all.reserve(selection.nodes.size());
+    const std::vector<LayerWindow> windows = windows_of(layers_, begin_s, end_s, clip_offset_s);
     for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
-        Activity own = own_activity(selection.nodes[slot], begin_s, end_s, clip_offset_s);
+        Activity own = own_activity(selection.nodes[slot], windows, begin_s, end_s, clip_offset_s);
         if (selection.parent_slot[slot] >= 0) {
             const Activity& above = all[index(selection.parent_slot[slot])];
             own.turn_rad += above.turn_rad;
@@ -227,38 +233,25 @@ std::vector<NodeRig::Activity> NodeRig::activity(const Selection& selection, dou
 
 std::vector<double> NodeRig::discontinuities(double begin_s, double end_s, double clip_offset_s) const {
     std::vector<double> times;
-    const auto add = [&times](const auto& track, double from, double to) { append(times, kadr::discontinuities(track, from, to)); };
-    for (const FileMotion& file : files_) {
-        add(*file.transform, begin_s, end_s);
+    for (const FileMotion& file : files_) append(times, kadr::discontinuities(*file.transform, begin_s, end_s));
+    for (const NodePose& pose : poses_)
+        if (pose.override) append(times, kadr::discontinuities(pose.override->transform, begin_s, end_s));
+    const std::vector<LayerWindow> windows = windows_of(layers_, begin_s, end_s, clip_offset_s);
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        append(times, kadr::discontinuities(layers_[layer].weight, begin_s, end_s));
+        if (jumps_at_seam_[layer]) append(times, seams_of(windows[layer]));
     }
-    for (const int node : order_) {
-        if (animated_index_[index(node)] < 0 || !reachable(node)) continue;
-        const Animated& a = animated_[index(animated_index_[index(node)])];
-        const FileMotion& file = files_[index(file_[index(node)])];
-        const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
-        const std::size_t known = times.size();
-        if (a.translation_track) add(*a.translation_track, std::min(from, to), std::max(from, to));
-        if (a.rotation_track) add(*a.rotation_track, std::min(from, to), std::max(from, to));
-        if (a.scale_track) add(*a.scale_track, std::min(from, to), std::max(from, to));
-        for (std::size_t i = known; i < times.size(); ++i) times[i] = file.shot_time(times[i], clip_offset_s);
-    }
+    for (const auto& step : vector_steps_) add_steps(*step.track, windows[index(step.layer)], times);
+    for (const auto& step : rotation_steps_) add_steps(*step.track, windows[index(step.layer)], times);
     return times;
 }
 
 std::vector<double> NodeRig::key_times_of(int node, double begin_s, double end_s, double clip_offset_s) const {
     std::vector<double> times;
+    const std::vector<LayerWindow> windows = windows_of(layers_, begin_s, end_s, clip_offset_s);
     for (; node >= 0; node = scene_->nodes[index(node)].parent) {
-        const FileMotion& file = files_[index(file_[index(node)])];
-        if (const int slot = animated_index_[index(node)]; slot >= 0) {
-            const Animated& a = animated_[index(slot)];
-            const double from = file.clip_time(begin_s, clip_offset_s), to = file.clip_time(end_s, clip_offset_s);
-            const std::size_t known = times.size();
-            if (a.translation_track) append(times, key_times(*a.translation_track, std::min(from, to), std::max(from, to)));
-            if (a.rotation_track) append(times, key_times(*a.rotation_track, std::min(from, to), std::max(from, to)));
-            if (a.scale_track) append(times, key_times(*a.scale_track, std::min(from, to), std::max(from, to)));
-            for (std::size_t i = known; i < times.size(); ++i) times[i] = file.shot_time(times[i], clip_offset_s);
-        }
-        if (scene_->nodes[index(node)].parent < 0) append(times, key_times(*file.transform, begin_s, end_s));
+        if (moves_itself(node)) poses_[index(pose_index_[index(node)])].add_key_times(windows, begin_s, end_s, times);
+        if (scene_->nodes[index(node)].parent < 0) append(times, key_times(*files_[index(file_[index(node)])].transform, begin_s, end_s));
     }
     return times;
 }

@@ -5,10 +5,22 @@
 
 #include <glm/glm.hpp>
 
+#include "frame/node_pose.h"
 #include "scene/scene.h"
 #include "shot/shot.h"
 
 namespace kadr {
+
+/// What an entry of the shot's `scenes` means for the nodes of its file.
+struct BoundScene {
+    struct Override {
+        int node = -1;
+        const NodeOverride* spec = nullptr;
+    };
+    std::vector<PlayingLayer> layers;
+    std::vector<Override> overrides;
+    std::vector<int> hidden;  ///< nodes left out, with all below them
+};
 
 /// The node trees of a shot's scenes, laid out for evaluation at many times: parents before children, tracks that
 /// never change folded into constants, and only what moves evaluated anew.
@@ -17,12 +29,19 @@ namespace kadr {
 /// scene play its clips earlier or later with it. It shifts clips alone; tracks of the shot keep to the shot's time.
 class NodeRig {
 public:
-    /// @param clips  indices into Scene::clips that play, one list per scene file
-    NodeRig(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips);
+    /// @param scenes  one per scene file; the shot's overrides are referred to, not copied
+    NodeRig(const Shot& shot, const Scene& scene, const std::vector<BoundScene>& scenes);
 
-    bool moves(int node) const { return moving_[index(node)]; }       ///< at any time of the shot
-    bool reachable(int node) const { return reachable_[index(node)]; } ///< from a root of its file's default scene
+    bool moves(int node) const { return moving_[index(node)]; }  ///< at any time of the shot
+    /// From a root of its file's default scene, with nothing hidden on the way.
+    bool reachable(int node) const { return reachable_[index(node)]; }
+    bool hidden(int node) const { return hidden_[index(node)]; }  ///< itself, or something above it
     int file_of(int node) const { return file_[index(node)]; }
+    /// Layers of all scenes; those of a file lie together. What else clips animate refers to them (LayeredTrack).
+    Layers layers() const { return layers_; }
+    int first_layer_of(int file) const { return files_[index(file)].first_layer; }
+    int layer_count_of(int file) const { return files_[index(file)].layer_count; }
+    bool moves_itself(int node) const;  ///< a clip or the shot changes its own transform over time
 
     glm::dmat4 scene_transform(int file, double time_s) const;  ///< world_from_scene
     glm::dmat4 node_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< world_from_node
@@ -54,35 +73,37 @@ public:
     std::vector<double> key_times_of(int node, double begin_s, double end_s, double clip_offset_s = 0) const;
 
 private:
-    /// A node that a clip animates; a null track leaves the constant.
-    struct Animated {
-        glm::dvec3 translation{0}, scale{1};
-        glm::dquat rotation{1, 0, 0, 0};
-        const Track<glm::dvec3>* translation_track = nullptr;
-        const Track<glm::dvec3>* scale_track = nullptr;
-        const Track<glm::dquat>* rotation_track = nullptr;
-    };
     struct FileMotion {
         const TransformTrack* transform = nullptr;
         bool moves = false;
-        double start_s = 0, speed = 1;
-        double clip_time(double time_s, double offset_s) const { return start_s + speed * (time_s + offset_s); }
-        double shot_time(double clip_s, double offset_s) const { return (clip_s - start_s) / speed - offset_s; }
+        int first_layer = 0, layer_count = 0;
+    };
+    template <class T>
+    struct StepTrack {
+        int layer = 0;
+        const Track<T>* track = nullptr;
     };
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-    void order_nodes();
-    void bind_clips(const std::vector<std::vector<int>>& clips);
-    void bind_channels(const NodeChannels& channels);
-    bool animates(int node) const;  ///< whether a clip changes its own transform over time
-    Activity own_activity(int node, double begin_s, double end_s, double clip_offset_s) const;
+    void order_nodes(const std::vector<BoundScene>& scenes);
+    void bind_layers(const std::vector<BoundScene>& scenes);
+    void bind_clip(const Clip& clip, int layer);
+    void place_nodes();
+    template <class T>
+    void note_jumps(const LayeredTrack<T>& track, std::vector<StepTrack<T>>& steps);
+    NodePose& pose_of(int node);
+    Activity own_activity(int node, LayerWindows windows, double begin_s, double end_s, double clip_offset_s) const;
 
     const Scene* scene_;
     std::vector<FileMotion> files_;
+    std::vector<PlayingLayer> layers_;
+    std::vector<bool> jumps_at_seam_;  ///< [layer]
+    std::vector<StepTrack<glm::dvec3>> vector_steps_;
+    std::vector<StepTrack<glm::dquat>> rotation_steps_;
     std::vector<int> order_, rank_, file_;
-    std::vector<bool> reachable_, moving_;
-    std::vector<int> animated_index_;  ///< -1: not animated
-    std::vector<Animated> animated_;
+    std::vector<bool> hidden_, reachable_, moving_;
+    std::vector<int> pose_index_;  ///< into poses_; -1: the file's own transform
+    std::vector<NodePose> poses_;
     std::vector<glm::dmat4> local_, world_;  ///< of what does not move
 };
 

@@ -1,39 +1,56 @@
 #include "frame/property_rig.h"
 
-#include <algorithm>
+#include "frame/layered_track.h"
 
 namespace kadr {
 
-template <class Times>
-std::vector<double> DrivenProperty::shot_times(double begin_s, double end_s, Times times) const {
-    if (speed == 0) return {};
-    // A clip may run backwards: its track is asked over the interval in ascending order.
-    const double from = start_s + speed * begin_s, to = start_s + speed * end_s;
-    std::vector<double> result = std::visit([&](const auto* keyed) { return times(*keyed, std::min(from, to), std::max(from, to)); }, track);
-    for (double& time : result) time = (time - start_s) / speed;
-    return result;
-}
+namespace {
+
+void append(std::vector<double>& all, const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); }
+
+}  // namespace
 
 std::vector<double> DrivenProperty::discontinuities(double begin_s, double end_s) const {
-    return shot_times(begin_s, end_s, [](const auto& keyed, double from, double to) { return kadr::discontinuities(keyed, from, to); });
+    return std::visit(
+        [&](const auto* keyed) {
+            if (!layer) return kadr::discontinuities(*keyed, begin_s, end_s);
+            const LayerWindow window = window_of(*layer, begin_s, end_s, 0);
+            std::vector<double> times = kadr::discontinuities(layer->weight, begin_s, end_s);
+            if (jumps_at_seam(*keyed, *layer)) append(times, seams_of(window));
+            add_steps(*keyed, window, times);
+            return times;
+        },
+        track);
 }
 
 std::vector<double> DrivenProperty::key_times(double begin_s, double end_s) const {
-    return shot_times(begin_s, end_s, [](const auto& keyed, double from, double to) { return kadr::key_times(keyed, from, to); });
+    return std::visit(
+        [&](const auto* keyed) {
+            if (!layer) return kadr::key_times(*keyed, begin_s, end_s);
+            std::vector<double> times;
+            for (const Pass& pass : window_of(*layer, begin_s, end_s, 0).passes)
+                for (const double key : kadr::key_times(*keyed, pass.low_s(), pass.high_s())) times.push_back(pass.shot_time(key));
+            return times;
+        },
+        track);
 }
 
-PropertyRig::PropertyRig(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips) {
-    for (std::size_t entry = 0; entry < clips.size(); ++entry)
-        for (const int clip : clips[entry])
-            for (const PropertyChannel& channel : scene.clips[static_cast<std::size_t>(clip)].properties) {
-                DrivenProperty driven;
-                driven.property = channel.property;
-                driven.use = channel.use;
-                std::visit([&](const auto& track) { driven.track = &track; }, channel.track);
-                driven.start_s = shot.scenes.at(entry).clip_start_s;
-                driven.speed = shot.scenes.at(entry).clip_speed;
-                driven_[{static_cast<int>(entry), owner_of(channel.property), channel.index}].push_back(driven);
-            }
+PropertyRig::PropertyRig(const Scene& scene, const std::vector<BoundScene>& scenes) {
+    for (std::size_t entry = 0; entry < scenes.size(); ++entry)
+        for (const PlayingLayer& layer : scenes[entry].layers)
+            for (const int clip : layer.clips) add_clip(scene.clips[static_cast<std::size_t>(clip)], static_cast<int>(entry), layer);
+}
+
+void PropertyRig::add_clip(const Clip& clip, int entry, const PlayingLayer& layer) {
+    if (!layer.counts()) return;
+    for (const PropertyChannel& channel : clip.properties) {
+        DrivenProperty driven;
+        driven.property = channel.property;
+        driven.use = channel.use;
+        std::visit([&](const auto& track) { driven.track = &track; }, channel.track);
+        driven.layer = layer;
+        driven_[{entry, owner_of(channel.property), channel.index}].push_back(driven);
+    }
 }
 
 const std::vector<DrivenProperty>& PropertyRig::of(int entry, PropertyOwner owner, int index) const {

@@ -1,23 +1,28 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <tuple>
 #include <variant>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "frame/node_rig.h"
 #include "scene/scene.h"
-#include "shot/shot.h"
 
 namespace kadr {
 
-/// A property's track and the clock that it runs by: a clip's, or the shot's own time.
+/// A property's track and the clock that it runs by: that of a layer of clips, or the shot's own time. Weights do not mix
+/// properties: of several layers that play the last one counts.
 struct DrivenProperty {
     Property property = Property::node_visible;
     TextureUse use = TextureUse::base_color;
     std::variant<const Track<double>*, const Track<glm::dvec2>*, const Track<glm::dvec3>*> track;  ///< never null
-    double start_s = 0, speed = 1;  ///< track time = start_s + speed * shot time
+    std::optional<PlayingLayer> layer = {};  ///< none: the track runs by the shot's time
+
+    /// Whether it drives the property at a time: its layer's weight is above zero.
+    bool plays(double time_s) const { return !layer || layer->weight_at(time_s) > 0; }
 
     double number(double time_s) const { return at<double>(time_s); }
     glm::dvec2 pair(double time_s) const { return at<glm::dvec2>(time_s); }
@@ -29,22 +34,22 @@ struct DrivenProperty {
 
 private:
     template <class T>
-    T at(double time_s) const { return evaluate(*std::get<const Track<T>*>(track), start_s + speed * time_s); }
-    template <class Times>
-    std::vector<double> shot_times(double begin_s, double end_s, Times times) const;
+    T at(double time_s) const { return evaluate(*std::get<const Track<T>*>(track), layer ? layer->clip_time(time_s, 0) : time_s); }
 };
 
 /// What the playing clips of each scene entry drive beside nodes' transforms (KHR_animation_pointer).
 class PropertyRig {
 public:
-    /// @param clips  indices into Scene::clips that play, one list per scene entry
-    PropertyRig(const Shot& shot, const Scene& scene, const std::vector<std::vector<int>>& clips);
+    /// @param scenes  one per scene entry
+    PropertyRig(const Scene& scene, const std::vector<BoundScene>& scenes);
 
     /// What is driven of one object, in the order in which it applies: where clips drive the same, the last one wins.
     /// @param index  node, light, camera: into the Scene's table; material: as the file numbers it
     const std::vector<DrivenProperty>& of(int entry, PropertyOwner owner, int index) const;
 
 private:
+    void add_clip(const Clip& clip, int entry, const PlayingLayer& layer);
+
     std::map<std::tuple<int, PropertyOwner, int>, std::vector<DrivenProperty>> driven_;
 };
 

@@ -1,6 +1,7 @@
 #include "frame/references.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -146,30 +147,76 @@ int resolve_camera(const Scene& scene, const NodeReference& reference) {
                                 suggestion(reference.text, paths, fmt::format("cameras of '{}'", source.id))));
 }
 
-std::vector<int> playing_clips(const Scene& scene, std::size_t file, const SceneSpec& spec) {
-    const SceneFile& source = scene.files[file];
-    std::vector<int> all;
+std::vector<int> resolve_nodes(const Scene& scene, int file, const NamedAt& name) {
+    const SceneFile& source = scene.files[static_cast<std::size_t>(file)];
+    const std::vector<int> nodes = nodes_named(scene, source, name.name);
+    if (!nodes.empty()) return nodes;
     std::vector<std::string> names;
-    for (int clip = source.first_clip; clip < source.first_clip + source.clip_count; ++clip) {
-        all.push_back(clip);
+    for (const std::string& path : node_names(scene, source)) names.push_back(path.substr(source.id.size() + 1));
+    throw InputError(problem_at(name.where, fmt::format("'{}' names no node of scene '{}'", name.name, source.id), suggestion(name.name, names, "nodes")));
+}
+
+int resolve_node(const Scene& scene, int file, const NamedAt& name) {
+    const std::vector<int> nodes = resolve_nodes(scene, file, name);
+    if (nodes.size() == 1) return nodes.front();
+    std::vector<std::string> paths;
+    const std::size_t id = scene.files[static_cast<std::size_t>(file)].id.size() + 1;
+    for (const int node : nodes) paths.push_back(node_path(scene, file, node).substr(id));
+    throw InputError(problem_at(name.where, fmt::format("'{}' names {} nodes of scene '{}'", name.name, nodes.size(), scene.files[static_cast<std::size_t>(file)].id),
+                                fmt::format("expected one; add a parent's name: {}", listed(paths))));
+}
+
+namespace {
+
+[[noreturn]] void refuse_clip(const ClipLayer& layer, std::string found, std::string expected) {
+    throw InputError(problem_at(layer.where, std::move(found), std::move(expected)));
+}
+
+int clip_by_index(const SceneFile& file, const ClipLayer& layer) {
+    if (layer.clip_index < file.clip_count) return file.first_clip + layer.clip_index;
+    refuse_clip(layer, fmt::format("scene '{}' has no clip {}", file.id, layer.clip_index),
+                file.clip_count == 0 ? "the file has no clips; leave `clip` out" : fmt::format("expected 0 to {}", file.clip_count - 1));
+}
+
+int clip_by_name(const Scene& scene, const SceneFile& file, const ClipLayer& layer) {
+    std::vector<int> found;
+    std::vector<std::string> names;
+    for (int clip = file.first_clip; clip < file.first_clip + file.clip_count; ++clip) {
         names.push_back(scene.clips[static_cast<std::size_t>(clip)].name);
+        if (names.back() == layer.clip_name) found.push_back(clip);
     }
-    if (spec.clips == SceneSpec::Clips::none) return {};
-    if (spec.clips == SceneSpec::Clips::all) return all;
-    if (spec.clip_index >= 0) {
-        if (spec.clip_index < source.clip_count) return {source.first_clip + spec.clip_index};
-        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has no clip {}", spec.id, spec.clip_index),
-                                    source.clip_count == 0 ? "the file has no clips; leave `clip` out"
-                                                           : fmt::format("expected 0 to {}", source.clip_count - 1)));
+    if (found.empty())
+        refuse_clip(layer, fmt::format("scene '{}' has no clip '{}'", file.id, layer.clip_name), suggestion(layer.clip_name, names, "clips of the file"));
+    if (found.size() > 1)
+        refuse_clip(layer, fmt::format("scene '{}' has {} clips '{}'", file.id, found.size(), layer.clip_name), "expected one; give its index");
+    return found.front();
+}
+
+void check_clip(const Scene& scene, const SceneFile& file, const ClipLayer& layer, int index) {
+    const Clip& clip = scene.clips[static_cast<std::size_t>(index)];
+    const std::string name = clip.name.empty() ? fmt::format("clip {}", index - file.first_clip) : fmt::format("clip '{}'", clip.name);
+    if (!clip.animates())
+        refuse_clip(layer, fmt::format("{} of scene '{}' animates nothing", name, file.id),
+                    clip.channel_count == 0 ? "it has no channels; leave it out"
+                                            : fmt::format("its {} channels point to what Kadr does not animate; leave it out", clip.channel_count));
+    if (layer.in_s.value_or(0) > clip.end_s && !layer.out_s)
+        refuse_clip(layer, fmt::format("in is {} s, and {} of scene '{}' ends at {} s", format_number(*layer.in_s), name, file.id, format_number(clip.end_s)),
+                    fmt::format("expected 0 to {} s", format_number(clip.end_s)));
+}
+
+}  // namespace
+
+std::vector<int> playing_clips(const Scene& scene, int file, const ClipLayer& layer) {
+    const SceneFile& source = scene.files[static_cast<std::size_t>(file)];
+    if (layer.clips == ClipLayer::Clips::none) return {};
+    if (layer.clips == ClipLayer::Clips::all) {
+        std::vector<int> all(static_cast<std::size_t>(source.clip_count));
+        std::iota(all.begin(), all.end(), source.first_clip);
+        return all;
     }
-    std::erase_if(all, [&](int clip) { return scene.clips[static_cast<std::size_t>(clip)].name != spec.clip_name; });
-    if (all.empty())
-        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has no clip '{}'", spec.id, spec.clip_name),
-                                    suggestion(spec.clip_name, names, "clips of the file")));
-    if (all.size() > 1)
-        throw InputError(problem_at(spec.clip_where, fmt::format("scene '{}' has {} clips '{}'", spec.id, all.size(), spec.clip_name),
-                                    "expected one; give its index"));
-    return all;
+    const int clip = layer.clip_index >= 0 ? clip_by_index(source, layer) : clip_by_name(scene, source, layer);
+    check_clip(scene, source, layer, clip);
+    return {clip};
 }
 
 }  // namespace kadr

@@ -26,8 +26,15 @@ ResolvedReference resolve(const Scene& scene, const NodeReference& reference);
 /// @throws InputError  where there is no camera, with those that there are
 int resolve_camera(const Scene& scene, const NodeReference& reference);
 
-/// The clips that an entry of the shot plays, as indices into Scene::clips.
-/// @throws InputError  for a clip that the file does not have
-std::vector<int> playing_clips(const Scene& scene, std::size_t file, const SceneSpec& spec);
+/// The node of a scene entry that a name of its `nodes` or `hide` means: "Node" or "Parent/Node", where levels may be
+/// left out.
+/// @throws InputError  for no such node ("did you mean"), or several (their paths)
+int resolve_node(const Scene& scene, int file, const NamedAt& name);
+/// All nodes of a name or path; where there is none as resolve_node.
+std::vector<int> resolve_nodes(const Scene& scene, int file, const NamedAt& name);
+
+/// The clips that a layer of a scene entry plays, as indices into Scene::clips.
+/// @throws InputError  for a clip that the file does not have, that several share the name of, or that animates nothing
+std::vector<int> playing_clips(const Scene& scene, int file, const ClipLayer& layer);
 
 }  // namespace kadr

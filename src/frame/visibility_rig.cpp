@@ -1,5 +1,7 @@
 #include "frame/visibility_rig.h"
 
+#include <algorithm>
+
 namespace kadr {
 
 namespace {
@@ -47,7 +49,8 @@ void VisibilityRig::add_tree(const Scene& scene, const PropertyRig& properties, 
 
 bool VisibilityRig::Switch::on(double time_s) const {
     if (by_shot) return is_on(*by_shot, time_s);
-    return by_clip.empty() ? rest : by_clip.back().number(time_s) >= 0.5;
+    const auto last = std::find_if(by_clip.rbegin(), by_clip.rend(), [time_s](const DrivenProperty& driven) { return driven.plays(time_s); });
+    return last == by_clip.rend() ? rest : last->number(time_s) >= 0.5;
 }
 
 VisibilityRig::States VisibilityRig::at(double time_s) const {
@@ -67,8 +70,10 @@ std::vector<double> VisibilityRig::discontinuities(double begin_s, double end_s)
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
     for (const Switch& one : switches_) {
-        if (one.by_shot) add(kadr::discontinuities(*one.by_shot, begin_s, end_s));
-        else if (!one.by_clip.empty()) add(one.by_clip.back().discontinuities(begin_s, end_s));
+        if (one.by_shot)
+            add(kadr::discontinuities(*one.by_shot, begin_s, end_s));
+        else
+            for (const DrivenProperty& driven : one.by_clip) add(driven.discontinuities(begin_s, end_s));
     }
     return times;
 }

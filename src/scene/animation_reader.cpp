@@ -135,6 +135,7 @@ public:
     Clip read() {
         // From the JSON: tinygltf leaves out channels that name no node.
         const nlohmann::json& channels = document_.json()["animations"][index_]["channels"];
+        clip_.channel_count = static_cast<int>(channels.size());
         for (std::size_t i = 0; i < channels.size(); ++i) channel(i, channels[i]);
         if (clip_.begin_s > clip_.end_s) clip_.begin_s = clip_.end_s = 0;
         return std::move(clip_);

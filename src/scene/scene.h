@@ -141,7 +141,10 @@ struct Clip {
     std::string name;
     double begin_s = 0, end_s = 0;
     std::vector<NodeChannels> channels;
+    int channel_count = 0;  ///< in the file, with those that are ignored
     std::vector<PropertyChannel> properties = {};  ///< what the clip drives beside nodes' transforms
+    /// Whether any of its channels means something here.
+    bool animates() const { return !channels.empty() || !properties.empty(); }
 };
 
 /// The part of a Scene that came from one glTF file of the shot. Ranges are half open.

@@ -85,6 +85,13 @@ Json texts_schema(const FieldSpec& field) {
     return {{"type", "array"}, {"items", std::move(item)}};
 }
 
+Json track_schema(const Json& value);
+
+Json weights_schema(const FieldSpec&) {
+    const Json weight{{"type", "number"}, {"minimum", 0}};
+    return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", any_of({weight, track_schema(weight)})}};
+}
+
 using FormSchema = Json (*)(const FieldSpec&);
 struct FormRow {
     unsigned form;
@@ -114,6 +121,7 @@ const FormRow kFormRows[] = {
      [](const FieldSpec& field) {
          return Json{{"type", "object"}, {"additionalProperties", section_schema(field.path)}};
      }},
+    {kWeights, weights_schema},
     {kTexts, texts_schema},
     {kFrames, [](const FieldSpec&) { return frames_schema(); }},
     {kRational,

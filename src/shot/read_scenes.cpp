@@ -9,42 +9,51 @@ namespace kadr {
 
 namespace {
 
-void read_transform(const Section& scene, SceneSpec& spec) {
-    const Section section = scene.section("transform");
-    assign(spec.transform.translate, read_position_track(section["translate"], true));
-    assign(spec.transform.rotate, read_rotation_track(section["rotate"]));
-    assign(spec.transform.scale, read_scale_track(section["scale"]));
+/// Which parts of a transform its section gives.
+struct GivenParts {
+    bool translate = false, rotate = false, scale = false;
+};
+
+GivenParts read_transform(const Section& section, TransformTrack& transform) {
+    assign(transform.translate, read_position_track(section["translate"], true));
+    assign(transform.rotate, read_rotation_track(section["rotate"]));
+    assign(transform.scale, read_scale_track(section["scale"]));
+    return {section.has("translate"), section.has("rotate"), section.has("scale")};
 }
 
-void read_clip(const Field& clip, SceneSpec& spec) {
-    if (!clip) return;
-    spec.clip_where = location_of(clip.node->place);
-    if (clip.node->is_map() || clip.node->is_list()) {
-        clip.error(fmt::format("{}: several clips with weights are not supported yet", clip.name),
-                   "expected " + expectation(*clip.spec));
-    } else if (is_word(clip, "all")) {
-        spec.clips = SceneSpec::Clips::all;
-    } else if (is_word(clip, "none")) {
-        spec.clips = SceneSpec::Clips::none;
-    } else if (looks_like_number(*clip.node)) {
-        spec.clips = SceneSpec::Clips::one;
-        const auto index = read_integer(clip);
-        if (index && (*index < 0 || *index > 1000000))
-            clip.mismatch("an index counts from 0");
-        else
-            assign(spec.clip_index, index);
-    } else if (const auto name = read_text(clip)) {
-        spec.clips = SceneSpec::Clips::one;
-        spec.clip_name = *name;
+void read_node_override(const Field& nodes, const YamlEntry& entry, SceneSpec& spec) {
+    const std::string name = fmt::format("{}.{}", nodes.name, entry.key.text);
+    if (!entry.value.is_map()) {
+        nodes.with(entry.value, name).error(fmt::format("{} is {}", name, shown_value(entry.value)), "expected a map such as { rotate: [0, 90 deg, 0] }");
+        return;
     }
+    const Section section(*nodes.context, &entry.value, "scenes.nodes", name);
+    NodeOverride node;
+    node.name = entry.key.text;
+    node.where = location_of(entry.key.place);
+    const GivenParts given = read_transform(section, node.transform);
+    node.translates = given.translate, node.rotates = given.rotate, node.scales = given.scale;
+    spec.nodes.push_back(std::move(node));
 }
 
-void read_animation(const Section& scene, SceneSpec& spec) {
-    const Section section = scene.section("animation");
-    read_clip(section["clip"], spec);
-    assign(spec.clip_start_s, read_number(section["start"]));
-    assign(spec.clip_speed, read_number(section["speed"]));
-    read_choice_index(section["loop"]);
+void read_nodes(const Field& nodes, SceneSpec& spec) {
+    if (!nodes) return;
+    if (!nodes.node->is_map()) return nodes.mismatch();
+    for (const YamlEntry& entry : nodes.node->entries) read_node_override(nodes, entry, spec);
+}
+
+void read_hide(const Field& hide, SceneSpec& spec) {
+    if (!hide) return;
+    if (!hide.node->is_list()) return hide.mismatch("write [ Name ] for one");
+    for (std::size_t i = 0; i < hide.node->items.size(); ++i) {
+        const YamlNode& item = hide.node->items[i];
+        if (item.is_scalar() && !item.text.empty()) {
+            spec.hide.push_back({item.text, location_of(item.place)});
+            continue;
+        }
+        const Field field = hide.with(item, fmt::format("{}.{}", hide.name, i));
+        field.error(fmt::format("{} is {}", field.name, shown_value(item)), "expected a node's name, or Parent/Node");
+    }
 }
 
 void read_gltf(const Field& field, SceneSpec& spec) {
@@ -87,9 +96,11 @@ SceneSpec read_scene(const Section& shot, const Field& list, const YamlNode& nod
     const Section section(shot.context(), &node, "scenes", entry_name("scenes", node, index));
     read_id(section["id"], spec);
     read_gltf(section["gltf"], spec);
+    read_transform(section.section("transform"), spec.transform);
+    spec.layers = read_animation(section);
+    read_nodes(section["nodes"], spec);
+    read_hide(section["hide"], spec);
     assign(spec.skinning, read_choice<Skinning>(section["skinning"]));
-    read_transform(section, spec);
-    read_animation(section, spec);
     read_appearance(section, spec);
     return spec;
 }

@@ -81,6 +81,13 @@ constexpr FormRow kFormRows[] = {
     {kPoints, [](const FieldSpec&) -> std::string { return "a list of points [x, y, z]"; }},
     {kOrbit, [](const FieldSpec&) { return map_text("orbit"); }},
     {kShake, [](const FieldSpec&) { return map_text("shake"); }},
+    {kWeights, [](const FieldSpec&) -> std::string { return "a map of names to weights such as { Walk: 0.3, Run: 0.7 }"; }},
+    {kNamedSections,
+     [](const FieldSpec& field) {
+         std::vector<std::string> keys;
+         for (const FieldSpec* below : fields_below(field.path)) keys.emplace_back(key_of(*below));
+         return fmt::format("a map of names to maps of {}", joined(keys, ", "));
+     }},
     {kSections, [](const FieldSpec&) -> std::string { return "a list of maps"; }},
     {kNamedSections, [](const FieldSpec&) -> std::string { return "a map of names to maps"; }},
 };

@@ -34,6 +34,7 @@ enum Form : unsigned {
     kMotion = 1u << 28,    ///< a position that may travel: the rows below `motion`
     kOrbit = 1u << 29,     ///< the rows below `orbit`
     kShake = 1u << 30,     ///< the rows below `shake`
+    kWeights = 1u << 21,        ///< a map of names to weights, each of which may be keyed over time
     kTrack = 1u << 31,     ///< each of the forms may be keyed over time
 };
 

@@ -43,18 +43,47 @@ struct MaterialSpec {
 /// How joints carry vertices: by blended matrices, as glTF says, or by blended dual quaternions, which keep the volume of
 /// twisted limbs.
 enum class Skinning { linear, dual_quaternion };
+/// One layer of a scene's animation: a clip, or all of them at once, when it plays and how much it counts. At the shot's
+/// time t it is at start + speed * (t - at) of its own time, kept within [in, out] as `loop` says.
+struct ClipLayer {
+    enum class Clips { all, none, one } clips = Clips::all;
+    std::string clip_name;  ///< Clips::one: a clip's name ...
+    int clip_index = -1;    ///< ... or its index; -1 when named
+    SourceLocation where;   ///< of the clip's name
+    double at_s = 0;
+    std::optional<double> start_s;  ///< none: in, or out where the speed is negative
+    double speed = 1;               ///< clip seconds a second; negative plays backwards
+    std::optional<double> in_s;     ///< none: 0, the clip's own start
+    std::optional<double> out_s;    ///< none: the end of the clip
+    enum class Loop { hold, repeat, pingpong } loop = Loop::hold;
+    Track<double> weight{1.0};      ///< over the shot's time, never negative
+    bool operator==(const ClipLayer&) const = default;
+};
+
+/// What the shot says of one node of a scene, whatever the clips say of it.
+struct NodeOverride {
+    std::string name;  ///< "Node" or "Parent/Node", as resolve_node (frame/) reads it
+    SourceLocation where;
+    TransformTrack transform;  ///< parent_from_node; each part counts only where it is given
+    bool translates = false, rotates = false, scales = false;
+    bool operator==(const NodeOverride&) const = default;
+};
+
+/// A name and where the shot says it.
+struct NamedAt {
+    std::string name;
+    SourceLocation where;
+    bool operator==(const NamedAt& other) const { return name == other.name; }
+};
 
 struct SceneSpec {
     std::string id;
     std::filesystem::path gltf;  ///< absolute
     SourceLocation where;        ///< of the path in the shot file
     TransformTrack transform;    ///< world_from_scene
-    enum class Clips { all, none, one } clips = Clips::all;
-    std::string clip_name;  ///< Clips::one: a clip's name ...
-    int clip_index = -1;    ///< ... or its index; -1 when named
-    SourceLocation clip_where;
-    double clip_start_s = 0;
-    double clip_speed = 1;
+    std::vector<ClipLayer> layers{ClipLayer{}};  ///< of clips, in the shot's order
+    std::vector<NodeOverride> nodes;
+    std::vector<NamedAt> hide;   ///< nodes left out with all below them
     SwitchTrack visible{1.0};  ///< of everything in the scene
     std::optional<std::string> variant;  ///< of KHR_materials_variants
     SourceLocation variant_where;

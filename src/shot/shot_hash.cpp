@@ -59,15 +59,16 @@ private:
     void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
-    void add(const SceneSpec& s) {
-        (*this)(s.skinning);
-        (*this)(s.id, s.transform, s.clips, s.clip_name, s.clip_index, s.clip_start_s, s.clip_speed);
-        (*this)(s.visible, s.variant, s.materials);
+    void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.layers, s.nodes, s.hide, s.visible, s.variant, s.materials, s.skinning); }
+    void add(const ClipLayer& l) {
+        (*this)(l.clips, l.clip_name, l.clip_index, l.at_s, l.start_s, l.speed, l.in_s, l.out_s, l.loop, l.weight);
     }
     void add(const MaterialSpec& m) {
         (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.emissive_strength, m.alpha, m.alpha_cutoff,
                 m.normal_scale);
     }
+    void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales); }
+    void add(const NamedAt& named) { add(named.name); }
     void add(const CameraSpec& c) {
         (*this)(c.gltf, c.position, c.around, c.look_at, c.up, c.up_given, c.dolly_m, c.shake, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,
                 c.f_stop, c.focus, c.blades);

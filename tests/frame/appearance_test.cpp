@@ -211,7 +211,7 @@ TEST(Visibility, OfClipsFollowsTheClipsTime) {
     blink.index = 1;
     blink.track = track<double>({{0, 1}, {4, 0}}, Interpolation::step);
     stage.scene.clips[0].properties.push_back(blink);
-    stage.shot.scenes[0].clip_speed = 8;  // jumps at half a second
+    stage.shot.scenes[0].layers[0].speed = 8;  // jumps at half a second
     const std::vector<SceneSnapshot> parts = stage.snapshots();
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_DOUBLE_EQ(parts[0].weight, 0.5);

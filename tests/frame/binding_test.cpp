@@ -56,8 +56,8 @@ TEST(Binding, ListsTheNodesOfAnAmbiguousName) {
 TEST(Binding, ReportsAllProblemsAtOnce) {
     Stage stage;
     stage.shot.camera.look_at = reference("stage/Nobody");
-    stage.shot.scenes[0].clips = SceneSpec::Clips::one;
-    stage.shot.scenes[0].clip_name = "Walk";
+    stage.shot.scenes[0].layers[0].clips = ClipLayer::Clips::one;
+    stage.shot.scenes[0].layers[0].clip_name = "Walk";
     EXPECT_EQ(message_of([&] { stage.bind(); }),
               "stage.yaml:4:7: error: scene 'stage' has no clip 'Walk'\n"
               "  there are no clips of the file\n"
@@ -122,7 +122,7 @@ TEST(Binding, RunsFromFrameZeroToTheEndOfTheLongestClip) {
     stage.animate(stage.add_node("a")).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {1.01, {1, 0, 0}}});
     stage.scene.clips[0].end_s = 1.01;
     EXPECT_EQ(stage.bind().timing().frames.back(), 25);  // 24.24 frames
-    stage.shot.scenes[0].clip_speed = 2;
+    stage.shot.scenes[0].layers[0].speed = 2;
     EXPECT_EQ(stage.bind().timing().frames.back(), 13);
     stage.scene.clips[0].end_s = 1e9;
     EXPECT_EQ(message_of([&] { stage.bind(); }),
@@ -150,14 +150,14 @@ TEST(Binding, KnowsWhatNeverMoves) {
 TEST(Binding, PlaysClipsFromTheirStartAtTheirSpeed) {
     Stage stage;
     stage.animate(stage.add_node("a")).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {10, {10, 0, 0}}});
-    stage.shot.scenes[0].clip_start_s = 1;
-    stage.shot.scenes[0].clip_speed = 2;
+    stage.shot.scenes[0].layers[0].start_s = 1;
+    stage.shot.scenes[0].layers[0].speed = 2;
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(3)[0][3].x, 7);
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(100)[0][3].x, 10);  // holds
-    stage.shot.scenes[0].clip_speed = -1;
-    stage.shot.scenes[0].clip_start_s = 8;
+    stage.shot.scenes[0].layers[0].speed = -1;
+    stage.shot.scenes[0].layers[0].start_s = 8;
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(3)[0][3].x, 5);
-    stage.shot.scenes[0].clips = SceneSpec::Clips::none;
+    stage.shot.scenes[0].layers[0].clips = ClipLayer::Clips::none;
     EXPECT_DOUBLE_EQ(stage.bind().node_transforms(3)[0][3].x, 0);
 }
 
@@ -166,7 +166,7 @@ TEST(Binding, AnOffsetShiftsTheTimeOfClipsAlone) {
     const int parent = stage.add_node("parent"), child = stage.add_node("child", parent);
     stage.animate(child).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {1, {0, 0, 0}}, {10, {9, 0, 0}}});
     stage.shot.scenes[0].transform.translate = track<glm::dvec3>({{0, {0, 0, 0}}, {10, {0, 10, 0}}});
-    stage.shot.scenes[0].clip_speed = 2;
+    stage.shot.scenes[0].layers[0].speed = 2;
     const BoundShot bound = stage.bind();
     const NodeRig& rig = bound.bindings().rig;
     EXPECT_LT(glm::distance(glm::dvec3(rig.node_transform(child, 1, 0.5)[3]), glm::dvec3(2, 1, 0)), 1e-14);
@@ -176,7 +176,7 @@ TEST(Binding, AnOffsetShiftsTheTimeOfClipsAlone) {
     rig.evaluate(selection, 1, world, 0.5);
     EXPECT_EQ(world[static_cast<std::size_t>(selection.slot_of(child))], rig.node_transform(child, 1, 0.5));
     EXPECT_THAT(rig.key_times_of(child, 0.1, 4), testing::ElementsAre(0.5));
-    EXPECT_THAT(rig.key_times_of(child, 0.1, 4, -0.25), testing::ElementsAre(0.25, 0.75));
+    EXPECT_THAT(rig.key_times_of(child, 0.1, 4, -0.25), testing::UnorderedElementsAre(0.25, 0.75));
     EXPECT_EQ(rig.activity(selection, 0, 1)[1].keys, 1);
     EXPECT_EQ(rig.activity(selection, 0, 1, 0.75)[1].keys, 0);
 }

@@ -29,7 +29,7 @@ TEST(Snapshot, SplitsTheShutterWhereSomethingJumps) {
 
 TEST(Snapshot, SplitsForCamerasLightsAndSlowedClips) {
     Stage stage;
-    stage.shot.scenes[0].clip_speed = 0.5;
+    stage.shot.scenes[0].layers[0].speed = 0.5;
     stage.shot.camera.position = track<glm::dvec3>({{0, {0, 0, 5}}, {0.25, {1, 0, 5}}}, Interpolation::step);
     LightSpec light;
     light.strength = track<double>({{0, 1}, {0.75, 2}}, Interpolation::step);

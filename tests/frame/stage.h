@@ -50,7 +50,7 @@ struct Stage {
         shot.scenes[0].id = "stage";
         shot.scenes[0].gltf = "stage.glb";
         shot.scenes[0].where = {"stage.yaml", 3, 5};
-        shot.scenes[0].clip_where = {"stage.yaml", 4, 7};
+        shot.scenes[0].layers[0].where = {"stage.yaml", 4, 7};
         shot.camera.where = {"stage.yaml", 9, 1};
         shot.environment.where = {"stage.yaml", 12, 1};
         SceneFile file;
@@ -80,7 +80,7 @@ struct Stage {
 
     NodeChannels& animate(int node_index) {
         if (scene.clips.empty()) {
-            scene.clips.push_back({"Clip", 0, 1, {}});
+            scene.clips.push_back({"Clip", 0, 1000, {}, 1});
             scene.files[0].clip_count = 1;
         }
         scene.clips[0].channels.push_back({});

@@ -24,8 +24,8 @@ TEST_F(Values, DefaultsAreThoseOfTheFormat) {
     ASSERT_EQ(shot.scenes.size(), 1u);
     EXPECT_EQ(shot.scenes[0].id, "a");
     EXPECT_EQ(shot.scenes[0].gltf, folder_ / "a.glb");
-    EXPECT_EQ(shot.scenes[0].clips, SceneSpec::Clips::all);
-    EXPECT_EQ(shot.scenes[0].clip_speed, 1);
+    EXPECT_EQ(shot.scenes[0].layers.at(0).clips, ClipLayer::Clips::all);
+    EXPECT_EQ(shot.scenes[0].layers[0].speed, 1);
     EXPECT_EQ(shot.camera.up, Track<glm::dvec3>(glm::dvec3(0, 1, 0)));
     EXPECT_EQ(shot.camera.sensor_mm, glm::dvec2(36, 24));
     EXPECT_FALSE(shot.camera.focal_length_mm || shot.camera.vertical_fov_rad || shot.camera.f_stop ||
@@ -69,8 +69,8 @@ TEST_F(Values, UnitsAreConvertedExactlyOnce) {
               Track<glm::dvec3>(glm::dvec3(1, 0.2, 0.035)));
     EXPECT_EQ(parse_camera("{ position: [+1e1, -.5, 2 km] }").camera.position,
               Track<glm::dvec3>(glm::dvec3(10, -0.5, 2000)));
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 250 ms } }").scenes[0].clip_start_s, 0.25);
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 12 f } }").scenes[0].clip_start_s, 0.5);
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 250 ms } }").scenes[0].layers.at(0).start_s, 0.25);
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { start: 12 f } }").scenes[0].layers.at(0).start_s, 0.5);
     EXPECT_EQ(parse("image: { size: [640 px, 360] }").image.width, 640);
 }
 
@@ -167,15 +167,15 @@ TEST_F(Values, ScaleIsOneFactorOrThree) {
 }
 
 TEST_F(Values, ClipsAreNamedCountedAllOrNone) {
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: none } }").scenes[0].clips, SceneSpec::Clips::none);
-    const SceneSpec named = parse_scene("{ gltf: a.glb, animation: { clip: Walk, speed: -2 } }").scenes[0];
-    EXPECT_EQ(named.clips, SceneSpec::Clips::one);
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: none } }").scenes[0].layers.at(0).clips, ClipLayer::Clips::none);
+    const ClipLayer named = parse_scene("{ gltf: a.glb, animation: { clip: Walk, speed: -2 } }").scenes[0].layers.at(0);
+    EXPECT_EQ(named.clips, ClipLayer::Clips::one);
     EXPECT_EQ(named.clip_name, "Walk");
-    EXPECT_EQ(named.clip_speed, -2);
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: 3 } }").scenes[0].clip_index, 3);
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"all\" } }").scenes[0].clip_name,
+    EXPECT_EQ(named.speed, -2);
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: 3 } }").scenes[0].layers.at(0).clip_index, 3);
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"all\" } }").scenes[0].layers.at(0).clip_name,
               "all");  // in quotes: a clip of that name
-    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"3\" } }").scenes[0].clip_name, "3");
+    EXPECT_EQ(parse_scene("{ gltf: a.glb, animation: { clip: \"3\" } }").scenes[0].layers.at(0).clip_name, "3");
 }
 
 TEST_F(Values, CameraLooksAtPointsNodesAndTracks) {
