@@ -34,7 +34,7 @@ struct PlayingLayer {
 PlayingLayer make_layer(const ClipLayer& layer, std::vector<int> clips, const Scene& scene);
 
 /// A part of a window during which a layer's clip time runs evenly from one time to another.
-struct Pass {
+struct ClipPass {
     double begin_s = 0, end_s = 0;  ///< of the shot
     double from_s = 0, to_s = 0;    ///< of the clip, at begin and at end
     double low_s() const { return from_s < to_s ? from_s : to_s; }
@@ -49,7 +49,7 @@ struct LayerWindow {
     const PlayingLayer* layer = nullptr;
     double begin_s = 0, end_s = 0;
     bool counts = false;        ///< whether its weight is above zero anywhere in the window
-    std::vector<Pass> passes;   ///< those in which it runs, in order; none where it does not count
+    std::vector<ClipPass> passes;   ///< those in which it runs, in order; none where it does not count
     double passes_left_out = 0; ///< beyond kMostPasses
 };
 LayerWindow window_of(const PlayingLayer& layer, double begin_s, double end_s, double offset_s);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include "frame/decompose.h"
@@ -117,7 +118,7 @@ bool bends_at(const Track<T>& track, const PlayingLayer& layer, double clip_s) {
 
 double turn_of(const Track<glm::dquat>& track, const LayerWindow& window) {
     double turn = 0;
-    for (const Pass& pass : window.passes) turn += turn_of(track, pass.low_s(), pass.high_s());
+    for (const ClipPass& pass : window.passes) turn += turn_of(track, pass.low_s(), pass.high_s());
     if (window.passes_left_out > 0) turn += window.passes_left_out * turn_of(track, window.layer->in_s, window.layer->out_s);
     return turn;
 }
@@ -131,6 +132,42 @@ double widest_angle(const LayeredTrack<glm::dquat>& track, Layers layers, double
         for (std::size_t k = 0; k < i; ++k) widest = std::max(widest, angle_between(rotations[i], rotations[k]));
     return widest;
 }
+
+/// Two of the rotations of a mix; the last is the property's own.
+class MixedPair {
+public:
+    MixedPair(const LayeredTrack<glm::dquat>& track, Layers layers, std::size_t a, std::size_t b, double clip_offset_s)
+        : track_(track), layers_(layers), a_(a), b_(b), offset_s_(clip_offset_s) {}
+
+    /// Where they are half a turn apart, the cosine of half their angle, followed without a change of sign, is zero.
+    std::optional<double> flip_between(double from_s, double to_s) const {
+        const glm::dquat a = rotation(a_, from_s), b = rotation(b_, from_s);
+        const auto cosine = [&](double time_s) { return glm::dot(nearer(a, rotation(a_, time_s)), nearer(b, rotation(b_, time_s))); };
+        const double first = glm::dot(a, b);
+        if (!(first * cosine(to_s) < 0)) return std::nullopt;
+        for (int step = 0; step < 60; ++step) {
+            const double middle = 0.5 * (from_s + to_s);
+            (first * cosine(middle) > 0 ? from_s : to_s) = middle;
+        }
+        return weight(a_, to_s) > kNothing && weight(b_, to_s) > kNothing ? std::optional(to_s) : std::nullopt;
+    }
+
+private:
+    static glm::dquat nearer(const glm::dquat& to, const glm::dquat& q) { return glm::dot(to, q) < 0 ? -q : q; }
+    glm::dquat rotation(std::size_t i, double time_s) const {
+        if (i == track_.parts.size()) return track_.rest;
+        return evaluate(*track_.parts[i].track, layer_of<glm::dquat>(track_.parts[i], layers_).clip_time(time_s, offset_s_));
+    }
+    double weight(std::size_t i, double time_s) const {
+        double sum = 0;
+        return shares_at(track_, layers_, time_s, sum)[i];
+    }
+
+    const LayeredTrack<glm::dquat>& track_;
+    Layers layers_;
+    std::size_t a_, b_;
+    double offset_s_;
+};
 
 }  // namespace
 
@@ -187,7 +224,7 @@ void add_key_times(const LayeredTrack<T>& track, LayerWindows windows, std::vect
         const auto inside = [&](double time) { return time > window.begin_s && time < window.end_s && times.size() < most; };
         for (const double key : key_times(window.layer->weight, window.begin_s, window.end_s))
             if (inside(key)) times.push_back(key);
-        for (const Pass& pass : window.passes) {
+        for (const ClipPass& pass : window.passes) {
             for (const double key : key_times(*part.track, pass.low_s(), pass.high_s()))
                 if (times.size() < most) times.push_back(pass.shot_time(key));
             if (inside(pass.end_s) && bends_at(*part.track, *window.layer, pass.to_s)) times.push_back(pass.end_s);
@@ -214,6 +251,18 @@ double turn_of(const LayeredTrack<glm::dquat>& track, Layers layers, LayerWindow
     return share * (turns + fade.change * std::min(widest_angle(track, layers, windows[0].begin_s, clip_offset_s) + turns, kHalfTurn));
 }
 
+void add_flips(const LayeredTrack<glm::dquat>& track, Layers layers, double begin_s, double end_s, double clip_offset_s, std::vector<double>& times) {
+    const std::size_t own = track.parts.size();
+    for (std::size_t a = 0; a <= own; ++a)
+        for (std::size_t b = 0; b < a; ++b) {
+            const MixedPair pair(track, layers, a, b, clip_offset_s);
+            for (int i = 0; i < kCurveSteps; ++i)
+                if (const auto flip = pair.flip_between(std::lerp(begin_s, end_s, i / static_cast<double>(kCurveSteps)),
+                                                        std::lerp(begin_s, end_s, (i + 1) / static_cast<double>(kCurveSteps))))
+                    times.push_back(*flip);
+        }
+}
+
 template <class T>
 bool jumps_at_seam(const Track<T>& track, const PlayingLayer& layer) {
     if (layer.loop != ClipLayer::Loop::repeat || !layer.runs()) return false;
@@ -222,7 +271,7 @@ bool jumps_at_seam(const Track<T>& track, const PlayingLayer& layer) {
 
 template <class T>
 void add_steps(const Track<T>& track, const LayerWindow& window, std::vector<double>& times) {
-    for (const Pass& pass : window.passes) {
+    for (const ClipPass& pass : window.passes) {
         // An end of a pass may be a step key itself.
         const double low = std::nextafter(pass.low_s(), -1e300), high = std::nextafter(pass.high_s(), 1e300);
         for (const double key : discontinuities(track, low, high)) times.push_back(pass.shot_time(key));

@@ -86,6 +86,8 @@ void NodeRig::bind_layers(const std::vector<BoundScene>& scenes) {
         note_jumps(pose.translation, vector_steps_);
         note_jumps(pose.scale, vector_steps_);
         note_jumps(pose.rotation, rotation_steps_);
+        const auto mixes = [&](const auto& part) { return !(layers_[index(part.layer)].weight.is_constant() && layers_[index(part.layer)].weight_at(0) >= 1); };
+        if (pose.rotation.parts.size() > 1 || std::any_of(pose.rotation.parts.begin(), pose.rotation.parts.end(), mixes)) mixed_rotations_.push_back(pose_index_[node]);
     }
 }
 
@@ -243,6 +245,7 @@ std::vector<double> NodeRig::discontinuities(double begin_s, double end_s, doubl
     }
     for (const auto& step : vector_steps_) add_steps(*step.track, windows[index(step.layer)], times);
     for (const auto& step : rotation_steps_) add_steps(*step.track, windows[index(step.layer)], times);
+    for (const int pose : mixed_rotations_) add_flips(poses_[index(pose)].rotation, layers_, begin_s, end_s, clip_offset_s, times);
     return times;
 }
 

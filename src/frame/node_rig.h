@@ -42,6 +42,8 @@ public:
     int first_layer_of(int file) const { return files_[index(file)].first_layer; }
     int layer_count_of(int file) const { return files_[index(file)].layer_count; }
     bool moves_itself(int node) const;  ///< a clip or the shot changes its own transform over time
+    /// What moves a node; null where neither a clip nor the shot says anything of it.
+    const NodePose* pose(int node) const { return pose_index_[index(node)] < 0 ? nullptr : &poses_[index(pose_index_[index(node)])]; }
 
     glm::dmat4 scene_transform(int file, double time_s) const;  ///< world_from_scene
     glm::dmat4 node_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< world_from_node
@@ -104,6 +106,7 @@ private:
     std::vector<bool> hidden_, reachable_, moving_;
     std::vector<int> pose_index_;  ///< into poses_; -1: the file's own transform
     std::vector<NodePose> poses_;
+    std::vector<int> mixed_rotations_;  ///< poses in which a rotation has a weight below 1 or several layers
     std::vector<glm::dmat4> local_, world_;  ///< of what does not move
 };
 

@@ -28,7 +28,7 @@ std::vector<double> DrivenProperty::key_times(double begin_s, double end_s) cons
         [&](const auto* keyed) {
             if (!layer) return kadr::key_times(*keyed, begin_s, end_s);
             std::vector<double> times;
-            for (const Pass& pass : window_of(*layer, begin_s, end_s, 0).passes)
+            for (const ClipPass& pass : window_of(*layer, begin_s, end_s, 0).passes)
                 for (const double key : kadr::key_times(*keyed, pass.low_s(), pass.high_s())) times.push_back(pass.shot_time(key));
             return times;
         },

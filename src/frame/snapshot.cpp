@@ -68,7 +68,7 @@ std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
     std::vector<double> jumps;
     if (frame.close_s > frame.open_s) jumps = jumps_inside(shot, frame.open_s, frame.close_s);
     if (jumps.size() >= kMostParts)
-        throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("the shutter of frame {} holds {} step keys", frame.number, jumps.size()),
+        throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("the shutter of frame {} holds {} jumps: step keys, loops that start again", frame.number, jumps.size()),
                                     fmt::format("expected fewer than {}; close the shutter earlier", kMostParts)));
     std::vector<Part> parts;
     double open = frame.open_s;

@@ -4,6 +4,7 @@
 
 #include "output/encoder.h"
 #include "output/image_io.h"
+#include "render/clip_report.h"
 #include "render/loaded_shot.h"
 #include "render/output_plan.h"
 #include "render/render_job.h"
@@ -29,7 +30,7 @@ struct Bound {
 };
 
 /// What `kadr check --verbose` prints of a shot that binds.
-std::string details_of(const LoadedShot& loaded) { return timeline_text(loaded.bound()); }
+std::string details_of(const LoadedShot& loaded) { return timeline_text(loaded.bound()) + clip_report(loaded.bound()); }
 
 Bound bind_names(const Shot& shot, bool verbose, std::vector<Diagnostic>& problems) {
     Bound bound{shot.timing.frames, {shot.warnings, {}}};

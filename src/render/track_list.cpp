@@ -136,6 +136,18 @@ void add_light(TrackList& list, const LightSpec& light) {
 
 }  // namespace
 
+namespace {
+
+void add_scene(TrackList& list, const SceneSpec& scene) {
+    const std::string name = "scenes." + scene.id;
+    list.add(name + ".transform", scene.transform);
+    for (std::size_t i = 0; i < scene.layers.size(); ++i)
+        list.add(name + ".animation." + (scene.layers.size() > 1 ? std::to_string(i) + "." : "") + "weight", scene.layers[i].weight);
+    for (const NodeOverride& node : scene.nodes) list.add(name + ".nodes." + node.name, node.transform);
+}
+
+}  // namespace
+
 std::vector<TrackInfo> tracks_of(const Shot& shot) {
     TrackList list;
     for (const SceneSpec& scene : shot.scenes) add_scene(list, scene);

@@ -63,7 +63,7 @@ RC_GTEST_PROP(ClipTimeProperty, PassesAreWhatTheClipTimeDoes, ()) {
     const PlayingLayer layer = layer_of(loop, speed, in + 0.3, in, in + length);
     const LayerWindow window = window_of(layer, begin, begin + 0.5, 0.125);
     double covered = 0;
-    for (const Pass& pass : window.passes) {
+    for (const ClipPass& pass : window.passes) {
         covered += pass.high_s() - pass.low_s();
         for (const double u : {0.01, 0.5, 0.99}) {
             const double time = std::lerp(pass.begin_s, pass.end_s, u), clip = std::lerp(pass.from_s, pass.to_s, u);
@@ -285,6 +285,21 @@ TEST(ClipLayers, SplitTheShutterAtStepsOfTheirWeights) {
     ASSERT_EQ(stage.snapshots().size(), 2u);
 }
 
+// Half a turn apart, the mean of two rotations changes sides.
+TEST(ClipLayers, SplitTheShutterWhereTheShorterArcFlips) {
+    Arm stage;
+    stage.scene.clips[0].channels[0].rotation = track<glm::dquat>({{0, turn(0)}, {2, turn(170)}});
+    stage.scene.clips[1].channels[0].rotation = Track<glm::dquat>(-turn(-90));
+    const BoundShot bound = stage.bind();
+    const NodeRig& rig = bound.bindings().rig;
+    const double flip = 2 * 90.0 / 170;
+    ASSERT_EQ(rig.discontinuities(0.8, 1.4).size(), 1u);
+    EXPECT_NEAR(rig.discontinuities(0.8, 1.4)[0], flip, 1e-12);
+    EXPECT_TRUE(rig.discontinuities(0.2, 1).empty());
+    EXPECT_NEAR(degrees_of(stage.pose(flip - 1e-6)), 0, 1e-3);
+    EXPECT_NEAR(std::abs(degrees_of(stage.pose(flip + 1e-6))), 180, 1e-3);
+}
+
 TEST(ClipLayers, FindStepKeysInEveryPass) {
     Arm stage;
     stage.shot.scenes[0].layers = {stage.named("a")};
@@ -349,7 +364,7 @@ RC_GTEST_PROP(ClipLayersProperty, ActivityBoundsTheTurn, ()) {
         const glm::dquat now = decompose(rig.node_transform(stage.arm, to)).rotation;
         const bool jump = std::any_of(jumps.begin(), jumps.end(), [&](double t) { return t >= from - 1e-9 && t <= to + 1e-9; });
         const double step = angle_between(before, now);
-        // Where two rotations pass half a turn apart their mean changes sides, which is not turning.
+        // Of three rotations (the node's own is one) the mean can change sides elsewhere too, which is not turning.
         if (!jump && step < 0.3) turned += step;
         before = now;
     }
