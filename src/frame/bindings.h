@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame/deformer.h"
+#include "frame/instance_list.h"
 #include "frame/material_rig.h"
 #include "frame/morph_rig.h"
 #include "frame/node_rig.h"
@@ -15,12 +16,10 @@
 
 namespace kadr {
 
-/// One primitive of one node, in the order of the nodes; its place in that order is the instance's stable id.
-struct InstanceSeed {
-    int node = -1;      ///< that places it: of a skinned mesh the root of its skin, else the node that has the mesh
-    std::uint32_t geometry = 0, material = 0, id = 0;
-    int mesh_node = -1; ///< that has the mesh
-    int deformer = -1;  ///< index into Bindings::deformers; -1: rigid
+/// A light of a node, in one copy of its scene.
+struct LightSeed {
+    int node = -1;
+    const Placement* copy = nullptr;  ///< null: the scene is not repeated
 };
 
 /// What binding a shot to its scenes finds out once, for every frame to use.
@@ -28,7 +27,9 @@ struct Bindings {
     NodeRig rig;
     std::map<std::string, ResolvedReference> references;
     std::vector<InstanceSeed> seeds;    ///< of nodes that a root reaches
-    std::vector<int> light_nodes;       ///< nodes with a light that shines
+    InstanceList instances;             ///< every copy of every seed
+    std::vector<double> clip_offsets_s; ///< of all copies, each once, ascending; 0 among them
+    std::vector<LightSeed> lights;      ///< lights of the scenes that shine
     int camera_node = -1;               ///< of an authored camera
     PropertyRig properties;
     VisibilityRig visibility;
@@ -37,12 +38,17 @@ struct Bindings {
     std::vector<Deformer> deformers;    ///< of seeds whose vertices bend
     std::shared_ptr<DeformedCache> deformed = std::make_shared<DeformedCache>();
 
+    /// world_from_node of an instance, or of a light's copy. @param copy null: the scene is not repeated
+    glm::dmat4 node_transform(int node, const Placement* copy, double time_s) const;
+    /// The first copy of a file, which references of the shot mean; null: it is not repeated.
+    const Placement* first_copy(int file) const { return instances.copies_of(file).empty() ? nullptr : &instances.copies_of(file).front(); }
     /// World position of a node or of a scene's root.
     glm::dvec3 position_of(const NodeReference& reference, double time_s) const;
-    /// The seed of an instance; there is one.
-    const InstanceSeed& seed_of(std::uint32_t id) const;
+    const InstanceSeed& seed_of(std::uint32_t id) const { return *instances[id].seed; }
     /// node_from_geometry of a seed: where its normalised vertices lie in the coordinates of its node.
     glm::dmat4 node_from_geometry(const Scene& scene, const InstanceSeed& seed) const;
+    /// The same with the instance's own place below the node.
+    glm::dmat4 copied_from_geometry(const Scene& scene, const Instance& instance) const;
 };
 
 }  // namespace kadr

@@ -9,6 +9,7 @@
 #include "frame/bindings.h"
 #include "frame/deform.h"
 #include "frame/problem.h"
+#include "frame/scatter.h"
 
 namespace kadr {
 
@@ -128,22 +129,73 @@ Timing with_frames(const Shot& shot, double longest_s) {
 
 std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig, const MaterialRig& materials) {
     std::vector<InstanceSeed> seeds;
-    std::uint32_t id = 0;
     for (std::size_t node = 0; node < scene.nodes.size(); ++node)
         for (const MeshPrimitive& primitive : scene.nodes[node].primitives) {
+            if (!rig.reachable(static_cast<int>(node))) continue;
             const int material = materials.material_of(rig.file_of(static_cast<int>(node)), primitive);
-            const InstanceSeed seed{static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(material), id++,
-                                    static_cast<int>(node)};
-            if (rig.reachable(seed.node)) seeds.push_back(seed);
+            seeds.push_back({static_cast<int>(node), static_cast<std::uint32_t>(primitive.geometry), static_cast<std::uint32_t>(material), static_cast<int>(node)});
         }
     return seeds;
 }
 
-std::vector<int> light_nodes_of(const Scene& scene, const NodeRig& rig) {
-    std::vector<int> nodes;
-    for (std::size_t node = 0; node < scene.nodes.size(); ++node)
-        if (scene.nodes[node].light >= 0 && rig.reachable(static_cast<int>(node))) nodes.push_back(static_cast<int>(node));
-    return nodes;
+/// Copies of every file of the shot; empty lists for those that are not repeated.
+std::vector<std::vector<Placement>> copies_of(const Shot& shot, const Scene& scene, const NodeRig& rig) {
+    std::vector<Diagnostic> problems;
+    std::vector<std::vector<Placement>> copies(scene.files.size());
+    for (std::size_t f = 0; f < copies.size(); ++f) {
+        const std::optional<InstancesSpec>& spec = shot.scenes.at(f).instances;
+        if (!spec) continue;
+        collect(problems, [&] { copies[f] = spec->scatter ? scatter_copies(*spec, static_cast<int>(f), scene, rig) : place_copies(*spec); });
+    }
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return copies;
+}
+
+std::vector<double> offsets_of(const InstanceList& instances, std::size_t files) {
+    std::vector<double> offsets{0};
+    for (std::size_t f = 0; f < files; ++f)
+        for (const Placement& copy : instances.copies_of(static_cast<int>(f))) offsets.push_back(copy.clip_offset_s);
+    std::sort(offsets.begin(), offsets.end());
+    offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
+    return offsets;
+}
+
+void check_count(const Shot& shot, const InstanceList& instances) {
+    if (instances.size() <= static_cast<std::size_t>(kMostInstances)) return;
+    throw InputError(problem_at({shot.file.string(), 0, 0}, fmt::format("the shot has {} instances", instances.size()),
+                                fmt::format("expected at most {}: fewer copies, or fewer parts in what is copied", kMostInstances)));
+}
+
+/// The bent vertices of a mesh are made once a frame, for all copies.
+void check_deforming_copies(const Shot& shot, const Scene& scene, const Bindings& bindings) {
+    for (const InstanceSeed& seed : bindings.seeds) {
+        const int file = bindings.rig.file_of(seed.mesh_node);
+        const std::span<const Placement> copies = bindings.instances.copies_of(file);
+        const bool offset = std::any_of(copies.begin(), copies.end(), [](const Placement& copy) { return copy.clip_offset_s != 0; });
+        if (seed.deformer < 0 || !offset) continue;
+        throw InputError(problem_at(shot.scenes.at(static_cast<std::size_t>(file)).instances->where,
+                                    fmt::format("copies play clips at other times, and the mesh of node '{}' bends with a skin or morph targets", node_path(scene, file, seed.mesh_node)),
+                                    "expected copies without offset: bending copies at other times are not supported yet; list the scene several times with other starts"));
+    }
+}
+
+/// Every light costs each shaded point some work, so copies of lights are for tens, not for thousands.
+constexpr std::size_t kMostLightCopies = 1024;
+
+std::vector<LightSeed> lights_of(const Shot& shot, const Scene& scene, const NodeRig& rig, const InstanceList& instances) {
+    std::vector<LightSeed> lights;
+    for (std::size_t node = 0; node < scene.nodes.size(); ++node) {
+        if (scene.nodes[node].light < 0 || !rig.reachable(static_cast<int>(node))) continue;
+        const int file = rig.file_of(static_cast<int>(node));
+        const std::span<const Placement> copies = instances.copies_of(file);
+        if (copies.size() > kMostLightCopies)
+            throw InputError(problem_at(shot.scenes.at(static_cast<std::size_t>(file)).instances->where,
+                                        fmt::format("{} copies repeat the light of node '{}'", copies.size(), node_path(scene, file, static_cast<int>(node))),
+                                        fmt::format("expected at most {} copies of a light; leave it out with hide, or all with use_scene_lights: false", kMostLightCopies)));
+        if (copies.empty()) lights.push_back({static_cast<int>(node), nullptr});
+        for (const Placement& copy : copies) lights.push_back({static_cast<int>(node), &copy});
+    }
+    return lights;
 }
 
 bool any_emission(const Bindings& bindings) {
@@ -162,7 +214,7 @@ bool is_black(const EnvironmentSpec& environment) {
 std::vector<Diagnostic> warnings_of(const Shot& shot, const Bindings& bindings) {
     std::vector<Diagnostic> warnings;
     const SourceLocation file{shot.file.string(), 0, 0};
-    const bool lit = !shot.lights.empty() || !bindings.light_nodes.empty();
+    const bool lit = !shot.lights.empty() || !bindings.lights.empty();
     if (!lit && !shot.environment.given)
         warnings.push_back(warning_at(file, "there are no lights and no environment",
                                       shot.render.integrator == Integrator::direct
@@ -176,13 +228,20 @@ std::vector<Diagnostic> warnings_of(const Shot& shot, const Bindings& bindings) 
 
 }  // namespace
 
-glm::dvec3 Bindings::position_of(const NodeReference& reference, double time_s) const {
-    const ResolvedReference& at = references.at(reference.text);
-    return glm::dvec3((at.node < 0 ? rig.scene_transform(at.file, time_s) : rig.node_transform(at.node, time_s))[3]);
+glm::dmat4 Bindings::node_transform(int node, const Placement* copy, double time_s) const {
+    if (!copy) return rig.node_transform(node, time_s);
+    return rig.scene_transform(rig.file_of(node), time_s) * matrix_of(*copy) * rig.scene_from_node(node, time_s, copy->clip_offset_s);
 }
 
-const InstanceSeed& Bindings::seed_of(std::uint32_t id) const {
-    return *std::lower_bound(seeds.begin(), seeds.end(), id, [](const InstanceSeed& seed, std::uint32_t wanted) { return seed.id < wanted; });
+glm::dvec3 Bindings::position_of(const NodeReference& reference, double time_s) const {
+    const ResolvedReference& at = references.at(reference.text);
+    if (at.node < 0) return glm::dvec3(rig.scene_transform(at.file, time_s)[3]);
+    return glm::dvec3(node_transform(at.node, first_copy(at.file), time_s)[3]);
+}
+
+glm::dmat4 Bindings::copied_from_geometry(const Scene& scene, const Instance& instance) const {
+    const glm::dmat4 local = node_from_geometry(scene, *instance.seed);
+    return instance.local ? matrix_of(*instance.local) * local : local;
 }
 
 glm::dmat4 Bindings::node_from_geometry(const Scene& scene, const InstanceSeed& seed) const {
@@ -215,12 +274,16 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
 
     sequence_ = Sequence(timing_, shot.shutter);
     auto bindings = std::make_shared<Bindings>(
-        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
+        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
     bindings->visibility = VisibilityRig(shot, scene, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
     bind_deformers(*this, *bindings);
-    if (shot.use_scene_lights) bindings->light_nodes = light_nodes_of(scene, bindings->rig);
+    bindings->instances = InstanceList(bindings->seeds, scene, copies_of(shot, scene, bindings->rig));
+    check_count(shot, bindings->instances);
+    check_deforming_copies(shot, scene, *bindings);
+    bindings->clip_offsets_s = offsets_of(bindings->instances, scene.files.size());
+    if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);
     bindings_ = std::move(bindings);

@@ -74,9 +74,10 @@ kernels::Light light_at(const BoundShot& shot, const LightSpec& spec, double tim
 }
 
 /// KHR_lights_punctual: along the node's -z; scale has no meaning for a light.
-kernels::Light light_at(const BoundShot& shot, int node, double time_s, const glm::dvec3& origin) {
+kernels::Light light_at(const BoundShot& shot, const LightSeed& seed, double time_s, const glm::dvec3& origin) {
+    const int node = seed.node;
     const SceneLight& source = shot.scene().lights[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].light)];
-    const glm::dmat4 world = shot.bindings().rig.node_transform(node, time_s);
+    const glm::dmat4 world = shot.bindings().node_transform(node, seed.copy, time_s);
     const double length = glm::length(glm::dvec3(world[2]));
     if (!is_finite(world))
         throw InputError(fmt::format("the node of light '{}' has a transform that is not finite at {} s", source.name, format_number(time_s)),
@@ -166,10 +167,10 @@ void add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneS
                  [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
     // Switches do not change within a part of the shutter.
     const VisibilityRig::States states = shot.bindings().visibility.at(0.5 * (open_s + close_s));
-    for (const int node : shot.bindings().light_nodes) {
-        if (!states.visible(node)) continue;
-        add_keys(shot.bindings().rig.key_times_of(node, open_s, close_s), open_s, close_s, near_m,
-                 [&](double time) { return light_at(shot, node, time, origin); }, snapshot);
+    for (const LightSeed& seed : shot.bindings().lights) {
+        if (!states.visible(seed.node)) continue;
+        add_keys(shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.copy ? seed.copy->clip_offset_s : 0), open_s, close_s, near_m,
+                 [&](double time) { return light_at(shot, seed, time, origin); }, snapshot);
     }
 }
 

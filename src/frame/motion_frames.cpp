@@ -14,6 +14,7 @@
 #include "frame/camera_keys.h"
 #include "frame/key_grid.h"
 #include "frame/problem.h"
+#include "frame/shared_transforms.h"
 
 namespace kadr {
 
@@ -166,9 +167,9 @@ private:
 /// Fits the frames of some instances; those that need more go round again with twice as many.
 class BatchFit {
 public:
-    BatchFit(const Interval& interval, std::span<const InstanceSeed> seeds, Batch& batch)
-        : interval_(interval), seeds_(seeds), batch_(batch), rig_(interval.shot.bindings().rig), scene_(interval.shot.scene()) {
-        batch_.fitted.resize(seeds.size());
+    BatchFit(const Interval& interval, std::span<const Instance> instances, Batch& batch)
+        : interval_(interval), instances_(instances), batch_(batch), rig_(interval.shot.bindings().rig), scene_(interval.shot.scene()) {
+        batch_.fitted.resize(instances.size());
     }
 
     void run() {
@@ -182,10 +183,12 @@ public:
     }
 
 private:
+    int node_of(std::size_t i) const { return instances_[i].seed->node; }
+    glm::dmat4 copied_from_geometry(std::size_t i) const { return interval_.shot.bindings().copied_from_geometry(scene_, instances_[i]); }
 
     void refuse(std::size_t i, std::string_view what, std::string expected) {
-        const int file = rig_.file_of(seeds_[i].node);
-        const std::string name = node_path(scene_, file, seeds_[i].node);
+        const int file = rig_.file_of(node_of(i));
+        const std::string name = node_path(scene_, file, node_of(i));
         batch_.problems.push_back(problem_at(interval_.shot.shot().scenes[static_cast<std::size_t>(file)].where,
                                              fmt::format("node '{}' {} at {} s", name, what, format_number(interval_.open_s)), std::move(expected)));
         batch_.fitted[i].hidden = true;
@@ -200,25 +203,32 @@ private:
     /// Instances that do not move over the shot, or all of them when the shutter is closed in an instant.
     void fit_still() {
         const bool instant = !(interval_.close_s > interval_.open_s);
-        std::vector<int> nodes;
-        for (const InstanceSeed& seed : seeds_)
-            if (rig_.moves(seed.node)) nodes.push_back(seed.node);
-        const NodeRig::Selection selection = rig_.select(nodes);
-        std::vector<glm::dmat4> world;
-        if (instant) rig_.evaluate(selection, interval_.open_s, world);
-        const auto activity = instant ? std::vector<NodeRig::Activity>{} : rig_.activity(selection, interval_.open_s, interval_.close_s);
-        for (std::size_t i = 0; i < seeds_.size(); ++i) {
-            const int node = seeds_[i].node;
-            if (rig_.moves(node) && !instant) {
-                enqueue(i, activity[static_cast<std::size_t>(selection.slot_of(node))]);
-            } else {
-                place_still(i, rig_.moves(node) ? world[static_cast<std::size_t>(selection.slot_of(node))] : rig_.node_transform(node, interval_.open_s));
-            }
+        SharedTransforms at_opening(interval_.shot.bindings(), {interval_.open_s});
+        std::vector<std::size_t> moving;
+        for (std::size_t i = 0; i < instances_.size(); ++i)
+            if (instant || !rig_.moves(node_of(i)))
+                place_still(i, at_opening.world_from_node(instances_[i]).front());
+            else
+                moving.push_back(i);
+        enqueue_all(moving);
+    }
+
+    /// By how lively the nodes are at the times of each copy's clips.
+    void enqueue_all(const std::vector<std::size_t>& moving) {
+        std::map<double, std::vector<std::size_t>> by_offset;
+        for (const std::size_t i : moving) by_offset[instances_[i].clip_offset_s()].push_back(i);
+        for (const auto& [offset, members] : by_offset) {
+            std::vector<int> nodes;
+            for (const std::size_t i : members) nodes.push_back(node_of(i));
+            nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+            const NodeRig::Selection selection = rig_.select(nodes);
+            const auto activity = rig_.activity(selection, interval_.open_s, interval_.close_s, offset);
+            for (const std::size_t i : members) enqueue(i, activity[static_cast<std::size_t>(selection.slot_of(node_of(i)))]);
         }
     }
 
     void place_still(std::size_t i, const glm::dmat4& world) {
-        const glm::dmat4 place = relative(world * interval_.shot.bindings().node_from_geometry(scene_, seeds_[i]), interval_.origin);
+        const glm::dmat4 place = relative(world * copied_from_geometry(i), interval_.origin);
         const Decomposition parts = decompose(place);
         if (!is_finite(place)) return refuse_infinite(i);
         batch_.fitted[i].hidden = is_singular(parts);
@@ -237,22 +247,18 @@ private:
     }
 
     void fit_moving(int segments, const std::vector<std::size_t>& members) {
-        std::vector<int> nodes;
-        for (const std::size_t i : members) nodes.push_back(seeds_[i].node);
-        const NodeRig::Selection selection = rig_.select(nodes);
-        std::vector<std::vector<glm::dmat4>> worlds(static_cast<std::size_t>(4 * segments + 1));
+        std::vector<double> times;
         std::vector<PixelScale> scales;
-        for (std::size_t k = 0; k < worlds.size(); ++k) {
-            const double u = static_cast<double>(k) / (4.0 * segments);
-            rig_.evaluate(selection, interval_.time(u), worlds[k]);
+        for (int k = 0; k <= 4 * segments; ++k) {
+            const double u = k / (4.0 * segments);
+            times.push_back(interval_.time(u));
             scales.push_back(interval_.scale_at(u));
         }
+        SharedTransforms transforms(interval_.shot.bindings(), times);
         for (const std::size_t i : members) {
-            const auto slot = static_cast<std::size_t>(selection.slot_of(seeds_[i].node));
-            const glm::dmat4 local = interval_.shot.bindings().node_from_geometry(scene_, seeds_[i]);
-            std::vector<glm::dmat4> places;
-            places.reserve(worlds.size());
-            for (const auto& world : worlds) places.push_back(relative(world[slot] * local, interval_.origin));
+            const glm::dmat4 local = copied_from_geometry(i);
+            std::vector<glm::dmat4> places = transforms.world_from_node(instances_[i]);
+            for (glm::dmat4& place : places) place = relative(place * local, interval_.origin);
             fit_one(i, segments, Fit(std::move(places), interval_, scales));
         }
     }
@@ -285,41 +291,41 @@ private:
     }
 
     const Interval& interval_;
-    std::span<const InstanceSeed> seeds_;
+    std::span<const Instance> instances_;
     Batch& batch_;
     const NodeRig& rig_;
     const Scene& scene_;
     std::map<int, std::vector<std::size_t>> waiting_;  ///< by segments
 };
 
-std::span<const InstanceSeed> batch_of(const std::vector<InstanceSeed>& seeds, std::size_t b) {
-    return std::span(seeds).subspan(b * kBatch, std::min(kBatch, seeds.size() - b * kBatch));
+std::vector<Instance> batch_of(const InstanceList& instances, std::size_t b) {
+    return instances.range(b * kBatch, std::min(kBatch, instances.size() - b * kBatch));
 }
 
-std::vector<Batch> fit_batches(const Interval& interval, const std::vector<InstanceSeed>& seeds) {
-    std::vector<Batch> batches((seeds.size() + kBatch - 1) / kBatch);
-    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) { BatchFit(interval, batch_of(seeds, b), batches[b]).run(); });
+std::vector<Batch> fit_batches(const Interval& interval, const InstanceList& instances) {
+    std::vector<Batch> batches((instances.size() + kBatch - 1) / kBatch);
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
+        const std::vector<Instance> members = batch_of(instances, b);
+        BatchFit(interval, members, batches[b]).run();
+    });
     std::vector<Diagnostic> problems;
     for (const Batch& batch : batches) problems.insert(problems.end(), batch.problems.begin(), batch.problems.end());
     if (!problems.empty()) throw InputError(std::move(problems));
     return batches;
 }
 
-glm::dmat4 absolute(glm::dmat4 place, const glm::dvec3& origin) {
-    for (int i = 0; i < 3; ++i) place[3][i] += origin[i];
-    return place;
-}
+/// Flattening a mesh gives it a structure of its own for every copy; beyond some thousands that costs more than it saves.
+constexpr std::size_t kMostFlattenedCopies = 4096;
 
-void add_instance(const BoundShot& shot, const InstanceSeed& seed, const Decomposition& first, SceneSnapshot& snapshot) {
-    SnapshotInstance instance;
-    instance.geometry = seed.geometry;
-    instance.material = seed.material;
-    instance.id = seed.id;
-    const NodeRig& rig = shot.bindings().rig;
-    instance.fixed = !rig.moves(seed.node);
-    // Not by way of the origin where there is a better way: subtracting and adding it again costs digits.
-    instance.world_from_geometry = instance.fixed ? rig.node_transform(seed.node, 0) * shot.bindings().node_from_geometry(shot.scene(), seed)
-                                                  : absolute(compose(first), snapshot.render_origin);
+void add_instance(const BoundShot& shot, const Instance& source, SceneSnapshot& snapshot) {
+    const Bindings& bindings = shot.bindings();
+    const int node = source.seed->node;
+    SnapshotInstance instance{source.seed->geometry, source.seed->material, source.id};
+    const std::size_t copies = bindings.instances.copies_of(bindings.rig.file_of(node)).size();
+    if (!bindings.rig.moves(node) && copies <= kMostFlattenedCopies) {
+        instance.fixed_place = static_cast<std::int32_t>(snapshot.fixed_places.size());
+        snapshot.fixed_places.push_back(bindings.node_transform(node, source.copy, 0) * bindings.copied_from_geometry(shot.scene(), source));
+    }
     snapshot.instances.push_back(instance);
 }
 
@@ -348,12 +354,12 @@ void pack(const BoundShot& shot, const std::vector<Batch>& batches, SceneSnapsho
     std::vector<const Decomposition*> sources;
     unsigned count = 0;
     for (std::size_t b = 0; b < batches.size(); ++b) {
-        const auto seeds = batch_of(shot.bindings().seeds, b);
-        for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const std::vector<Instance> members = batch_of(shot.bindings().instances, b);
+        for (std::size_t i = 0; i < members.size(); ++i) {
             const Fitted& fitted = batches[b].fitted[i];
             if (fitted.hidden) continue;
             sources.push_back(&batches[b].frames[fitted.first]);
-            add_instance(shot, seeds[i], *sources.back(), snapshot);
+            add_instance(shot, members[i], snapshot);
             motion.headers.push_back({count, fitted.count});
             motion.linear.push_back(fitted.linear ? 1 : 0);
             motion.max_error_px = std::max(motion.max_error_px, static_cast<double>(fitted.error_px));
@@ -424,7 +430,7 @@ glm::dmat4 interpolate(const MotionFrames& motion, const kernels::TransformHeade
 
 bool add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const Interval interval{shot, snapshot.render_origin, open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
-    const std::vector<Batch> batches = fit_batches(interval, shot.bindings().seeds);
+    const std::vector<Batch> batches = fit_batches(interval, shot.bindings().instances);
     if (std::any_of(batches.begin(), batches.end(), [](const Batch& batch) { return batch.too_fast; })) return false;
     pack(shot, batches, snapshot);
     return true;

@@ -143,6 +143,17 @@ glm::dmat4 NodeRig::node_transform(int node, double time_s, double clip_offset_s
     return world_[index(node)] * result;
 }
 
+glm::dmat4 NodeRig::scene_from_node(int node, double time_s, double clip_offset_s) const {
+    glm::dmat4 result(1);
+    for (; node >= 0; node = scene_->nodes[index(node)].parent)
+        result = (moves_itself(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)]) * result;
+    return result;
+}
+
+bool NodeRig::clips_jump() const {
+    return !vector_steps_.empty() || !rotation_steps_.empty() || std::find(jumps_at_seam_.begin(), jumps_at_seam_.end(), true) != jumps_at_seam_.end();
+}
+
 std::vector<glm::dmat4> NodeRig::all_transforms(double time_s, double clip_offset_s) const {
     std::vector<glm::dmat4> world = world_;
     std::vector<glm::dmat4> above;

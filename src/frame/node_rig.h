@@ -48,6 +48,10 @@ public:
     glm::dmat4 scene_transform(int file, double time_s) const;  ///< world_from_scene
     glm::dmat4 node_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< world_from_node
     glm::dmat4 local_transform(int node, double time_s, double clip_offset_s = 0) const;  ///< parent_from_node
+    /// Without the transform of the scene: what copies of the scene share.
+    glm::dmat4 scene_from_node(int node, double time_s, double clip_offset_s = 0) const;
+    /// Whether clips jump somewhere, so that copies which play them at other times jump at other times.
+    bool clips_jump() const;
     std::vector<glm::dmat4> all_transforms(double time_s, double clip_offset_s = 0) const;
 
     /// Some nodes and their moving ancestors, parents first.

@@ -50,9 +50,20 @@ std::vector<double> environment_discontinuities(const EnvironmentSpec& environme
     return times;
 }
 
+/// Copies that play their clips at other times jump at other times.
+std::vector<double> node_discontinuities(const Bindings& bindings, double begin_s, double end_s) {
+    std::vector<double> all = bindings.rig.discontinuities(begin_s, end_s);
+    if (!bindings.rig.clips_jump()) return all;
+    for (const double offset : bindings.clip_offsets_s) {
+        const std::vector<double> times = bindings.rig.discontinuities(begin_s, end_s, offset);
+        all.insert(all.end(), times.begin(), times.end());
+    }
+    return all;
+}
+
 std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
     std::vector<double> all;
-    for (const std::vector<double>& times : {shot.bindings().rig.discontinuities(begin_s, end_s), shot.bindings().morphs.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
+    for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), begin_s, end_s), shot.bindings().morphs.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
                                              light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
                                              shot.bindings().visibility.discontinuities(begin_s, end_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
         all.insert(all.end(), times.begin(), times.end());
@@ -80,7 +91,7 @@ std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
     return parts;
 }
 
-bool has_lights(const BoundShot& shot) { return !shot.shot().lights.empty() || !shot.bindings().light_nodes.empty(); }
+bool has_lights(const BoundShot& shot) { return !shot.shot().lights.empty() || !shot.bindings().lights.empty(); }
 
 kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
@@ -148,15 +159,8 @@ void add_bytes(Hasher& hasher, const std::vector<T>& values) {
 
 std::uint64_t key_of(const SceneSnapshot& snapshot) {
     Hasher hasher;
-    std::vector<std::uint32_t> integers;
-    std::vector<double> places;
-    for (const SnapshotInstance& instance : snapshot.instances) {
-        integers.insert(integers.end(), {instance.geometry, instance.material, instance.id, instance.mask, instance.fixed ? 1u : 0u, static_cast<std::uint32_t>(instance.deformed)});
-        const double* first = &instance.world_from_geometry[0][0];
-        if (instance.fixed) places.insert(places.end(), first, first + 16);
-    }
-    add_bytes(hasher, integers);
-    add_bytes(hasher, places);
+    add_bytes(hasher, snapshot.instances);
+    add_bytes(hasher, snapshot.fixed_places);
     add_bytes(hasher, snapshot.motion.headers);
     add_bytes(hasher, snapshot.motion.srt);
     add_bytes(hasher, snapshot.motion.matrices);
@@ -177,10 +181,13 @@ bool wants_motion(const Shot& shot) { return std::find(shot.output.aovs.begin(),
 PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, const SceneSnapshot& snapshot) {
     const double time_s = frame.open_s - 1 / shot.timing().fps.value();
     const std::vector<glm::dmat4> nodes = shot.node_transforms(time_s);
+    const Bindings& bindings = shot.bindings();
     PreviousPlaces places;
-    for (const SnapshotInstance& instance : snapshot.instances) {
-        const InstanceSeed& seed = shot.bindings().seed_of(instance.id);
-        places.world_from_geometry.push_back(nodes[static_cast<std::size_t>(seed.node)] * shot.bindings().node_from_geometry(shot.scene(), seed));
+    for (const SnapshotInstance& seen : snapshot.instances) {
+        const Instance instance = bindings.instances[seen.id];
+        const int node = instance.seed->node;
+        const glm::dmat4 world_from_node = instance.copy ? bindings.node_transform(node, instance.copy, time_s) : nodes[static_cast<std::size_t>(node)];
+        places.world_from_geometry.push_back(world_from_node * bindings.copied_from_geometry(shot.scene(), instance));
     }
     places.deformed = deformed_positions(shot, snapshot, time_s);
     places.camera = make_camera_keys(shot, time_s, time_s, snapshot.render_origin).front();

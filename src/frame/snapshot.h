@@ -44,11 +44,10 @@ struct SnapshotInstance {
     std::uint32_t geometry = 0, material = 0;  ///< indices into Scene
     std::uint32_t id = 0;                      ///< stable over the shot
     std::uint32_t mask = 0xffffffffu;
-    int deformed = -1;    ///< index into SceneSnapshot::deformed; -1: rigid
-    bool fixed = false;   ///< the same place in the world in every frame of the shot: a device may flatten it
-    /// world_from_geometry at the shutter's opening, double, absolute; what a flattening device bakes (after
-    /// subtracting the render origin).
-    glm::dmat4 world_from_geometry{1};
+    std::int32_t deformed = -1;                ///< index into SceneSnapshot::deformed; -1: rigid
+    /// Index into SceneSnapshot::fixed_places: it stands in the same place of the world in every frame of the shot, and a
+    /// device may flatten it. -1: it moves, or is one of so many copies that flattening does not pay.
+    std::int32_t fixed_place = -1;
 };
 
 /// A light over the shutter: keys evenly spaced on [0, 1]; one when it does not move.
@@ -79,6 +78,7 @@ struct SceneSnapshot {
     kernels::Shutter shutter;                  ///< when that light arrives
     glm::dvec3 render_origin{0};
     std::vector<SnapshotInstance> instances;
+    std::vector<glm::dmat4> fixed_places;      ///< world_from_geometry, double, absolute
     MotionFrames motion;                       ///< headers parallel to instances
     /// The whole table [material] that replaces the scene's in this part; empty: the scene's own. Entries beyond the
     /// scene's are copies that single entries of the shot have changed.

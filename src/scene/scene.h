@@ -10,6 +10,7 @@
 
 #include <glm/glm.hpp>
 
+#include "anim/placement.h"
 #include "anim/track.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -115,6 +116,7 @@ struct Node {
     glm::dquat rotation{1, 0, 0, 0};
     glm::dvec3 scale{1};
     std::vector<MeshPrimitive> primitives;
+    int placement_set = -1;      ///< index into Scene::placement_sets: its meshes stand at each of them (EXT_mesh_gpu_instancing)
     int light = -1, camera = -1; ///< indices into Scene::lights, Scene::cameras
     bool visible = true;         ///< KHR_node_visibility: false hides the node and all below it
     int skin = -1;               ///< index into Scene::skins: the mesh follows its joints, not this node
@@ -168,6 +170,7 @@ struct Scene {
     std::vector<std::string> material_names;
     std::vector<MaterialSource> material_sources;   ///< [material]
     std::vector<TextureData> textures;   ///< one per (image, colour space, sampler)
+    std::vector<std::vector<Placement>> placement_sets;  ///< node_from_copy; of EXT_mesh_gpu_instancing, never empty
     std::vector<SceneLight> lights;
     std::vector<SceneCamera> cameras;
     std::vector<Skin> skins;

@@ -108,7 +108,7 @@ const FormRow kFormRows[] = {
      }},
     {kInteger, [](const FieldSpec& field) { return number_schema(field, "integer"); }},
     {kNumber, [](const FieldSpec& field) { return component_schema(field); }},
-    {kVector2 | kSize2, [](const FieldSpec& field) { return list_schema(component_schema(field), 2); }},
+    {kVector2 | kSize2 | kRange, [](const FieldSpec& field) { return list_schema(component_schema(field), 2); }},
     {kVector3, [](const FieldSpec& field) { return list_schema(component_schema(field), 3); }},
     {kRotation, rotation_schema},
     {kChoice, words_schema},

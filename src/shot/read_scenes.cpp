@@ -102,6 +102,7 @@ SceneSpec read_scene(const Section& shot, const Field& list, const YamlNode& nod
     read_hide(section["hide"], spec);
     assign(spec.skinning, read_choice<Skinning>(section["skinning"]));
     read_appearance(section, spec);
+    spec.instances = read_instances(section);
     return spec;
 }
 

@@ -64,6 +64,7 @@ constexpr FormRow kFormRows[] = {
     {kNumber, number_text},
     {kSize2, [](const FieldSpec&) -> std::string { return "[width, height], whole numbers from 1 to 65536"; }},
     {kVector2, [](const FieldSpec& field) { return components_text("[width, height]", field); }},
+    {kRange, [](const FieldSpec& field) { return components_text("[least, largest]", field); }},
     {kVector3, [](const FieldSpec& field) { return components_text("[x, y, z]", field); }},
     {kRotation,
      [](const FieldSpec&) -> std::string {

@@ -29,6 +29,7 @@ enum Form : unsigned {
     kRational = 1u << 14,  ///< 24, 23.976, 24000/1001
     kKeys = 1u << 15,      ///< a map of times to values
     kSize2 = 1u << 16,     ///< [width, height], whole numbers
+    kRange = 1u << 17,     ///< [least, largest] of the quantity
     kNamedSections = 1u << 20,  ///< a map of names to maps, whose keys are the rows below this path
     kPoints = 1u << 27,    ///< a list of [x, y, z]
     kMotion = 1u << 28,    ///< a position that may travel: the rows below `motion`

@@ -24,6 +24,8 @@ std::vector<SceneSpec> read_scenes(const Section& shot);
 void read_appearance(const Section& scene, SceneSpec& spec);
 /// The clip layers of one entry of `scenes`.
 std::vector<ClipLayer> read_animation(const Section& scene);
+/// `instances` of one entry of `scenes`.
+std::optional<InstancesSpec> read_instances(const Section& scene);
 CameraSpec read_camera(const Section& shot);
 std::vector<LightSpec> read_lights(const Section& shot);
 /// @param has_lights  whether the shot has lights: the default depends on it

@@ -11,6 +11,7 @@
 #include "anim/track.h"
 #include "anim/transform.h"
 #include "base/error.h"
+#include "shot/instances_spec.h"
 
 namespace kadr {
 
@@ -89,6 +90,7 @@ struct SceneSpec {
     SourceLocation variant_where;
     std::vector<MaterialSpec> materials;
     Skinning skinning = Skinning::linear;
+    std::optional<InstancesSpec> instances;  ///< absent: one, in its place
     bool operator==(const SceneSpec&) const = default;
 };
 

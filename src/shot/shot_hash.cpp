@@ -58,8 +58,14 @@ private:
     void add(const Shake& s) { (*this)(s.amplitude_m, s.angle_rad, s.frequency_hz, s.seed); }
     void add(const RotationTrack::AxisAngle& rotation) { (*this)(rotation.axis, rotation.angle_rad); }
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
+    void add(const PlacementSpec& p) { (*this)(p.translate_m, p.rotate, p.scale, p.offset_s); }
+    void add(const GridSpec& g) { (*this)(g.counts[0], g.counts[1], g.counts[2], g.spacing_m, g.jitter); }
+    void add(const ScatterSpec& s) { (*this)(s.target, s.count, s.align); }
+    void add(const InstancesSpec& i) {
+        (*this)(i.list, i.grid, i.scatter, i.seed, i.random_yaw_rad, i.random_scale, i.random_offset_s);
+    }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
-    void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.layers, s.nodes, s.hide, s.visible, s.variant, s.materials, s.skinning); }
+    void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.layers, s.nodes, s.hide, s.visible, s.variant, s.materials, s.skinning, s.instances); }
     void add(const ClipLayer& l) {
         (*this)(l.clips, l.clip_name, l.clip_index, l.at_s, l.start_s, l.speed, l.in_s, l.out_s, l.loop, l.weight);
     }

@@ -106,8 +106,10 @@ struct SmallScene {
         instance.geometry = geometry;
         instance.material = static_cast<unsigned>(scene.materials.size() - 1);
         instance.id = static_cast<unsigned>(snapshot.instances.size());
-        instance.fixed = fixed;
-        instance.world_from_geometry = frames[0];
+        if (fixed) {
+            instance.fixed_place = static_cast<int>(snapshot.fixed_places.size());
+            snapshot.fixed_places.push_back(frames[0]);
+        }
         snapshot.instances.push_back(instance);
         MotionFrames& motion = snapshot.motion;
         motion.type = MotionFrames::Type::matrix;

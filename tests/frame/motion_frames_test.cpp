@@ -89,8 +89,8 @@ TEST(MotionFrames, OneFrameWhenStill) {
     expect_well_formed(snapshot);
     EXPECT_EQ(snapshot.motion.headers[0].frame_count, 1u);
     EXPECT_EQ(snapshot.motion.headers[1].frame_count, 1u);
-    EXPECT_FALSE(snapshot.instances[0].fixed);
-    EXPECT_TRUE(snapshot.instances[1].fixed);
+    EXPECT_EQ(snapshot.instances[0].fixed_place, -1);
+    EXPECT_EQ(snapshot.instances[1].fixed_place, 0);
     EXPECT_EQ(stage.snapshot(2).motion.headers[0].frame_count, 2u);
 }
 

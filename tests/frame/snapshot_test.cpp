@@ -83,8 +83,8 @@ TEST(Snapshot, FixedInstancesHoldTheirPlaceInTheWorldExactly) {
     stage.shot.camera.position = glm::dvec3(1e7, 0, 5);
     stage.shot.camera.look_at = Track<glm::dvec3>(glm::dvec3(1e7, 0, 0));
     const SceneSnapshot snapshot = stage.snapshot();
-    EXPECT_EQ(snapshot.instances[0].world_from_geometry[3], glm::dvec4(1e7 + 0.123, 1, 0, 1));
-    EXPECT_EQ(snapshot.instances[0].world_from_geometry[0].x, 2);
+    EXPECT_EQ(snapshot.fixed_places[0][3], glm::dvec4(1e7 + 0.123, 1, 0, 1));
+    EXPECT_EQ(snapshot.fixed_places[0][0].x, 2);
     EXPECT_NE(snapshot.render_origin.x, 0);
     EXPECT_NEAR(snapshot.motion.srt[0].translation[0] + snapshot.render_origin.x, 1e7 + 0.123, 2e-5);  // half an ulp of 320 m
 }

@@ -110,13 +110,15 @@ std::string message_of(Action action) {
 }
 
 /// Largest screen-space distance between the frames and the true path of an instance, over many times.
-inline double worst_error_px(const Stage& stage, const SceneSnapshot& snapshot, std::size_t instance, int node, int times = 500) {
+/// @param world_from_node  (time in s) -> the true place
+template <class Path>
+double worst_error_px(const Stage& stage, const SceneSnapshot& snapshot, std::size_t instance, Path world_from_node, int times) {
     const BoundShot bound = stage.bind();
     const GeometryData& geometry = stage.scene.geometries[snapshot.instances[instance].geometry];
     double worst = 0;
     for (int i = 0; i <= times; ++i) {
         const double u = static_cast<double>(i) / times, time = std::lerp(snapshot.open_s, snapshot.close_s, u);
-        glm::dmat4 wanted = bound.node_transforms(time)[static_cast<std::size_t>(node)] * glm::translate(glm::dmat4(1), geometry.centre) *
+        glm::dmat4 wanted = world_from_node(time) * glm::translate(glm::dmat4(1), geometry.centre) *
                             glm::scale(glm::dmat4(1), glm::dvec3(geometry.scale));
         wanted[3] -= glm::dvec4(snapshot.render_origin, 0);
         const glm::dmat4 is = interpolate(snapshot.motion, snapshot.motion.headers[instance], u);
@@ -133,6 +135,10 @@ inline double worst_error_px(const Stage& stage, const SceneSnapshot& snapshot, 
         }
     }
     return worst;
+}
+inline double worst_error_px(const Stage& stage, const SceneSnapshot& snapshot, std::size_t instance, int node, int times = 500) {
+    const BoundShot bound = stage.bind();
+    return worst_error_px(stage, snapshot, instance, [&](double time) { return bound.node_transforms(time)[static_cast<std::size_t>(node)]; }, times);
 }
 
 }  // namespace kadr::test

@@ -44,9 +44,9 @@ TEST(Schema, DescribesOneKeyLikeThis) {
               "  units    deg, rad\n"
               "  default  180 deg\n"
               "  example  angle: 180 deg\n");
-    EXPECT_EQ(describe_schema("scenes.instances"),
-              "scenes.instances\n"
-              "  copies of the scene\n"
+    EXPECT_EQ(describe_schema("render.samples.max_error"),
+              "render.samples.max_error\n"
+              "  sample until the error is below this\n"
               "\n"
               "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n");
 }

@@ -50,6 +50,10 @@ float average_luminance(const kernels::Texture* textures, const kernels::Texture
     return sum / (kSteps * kSteps);
 }
 
+const glm::dmat4& fixed_place(const SceneSnapshot& snapshot, const SnapshotInstance& instance) {
+    return snapshot.fixed_places[static_cast<std::size_t>(instance.fixed_place)];
+}
+
 bool emits(const kernels::Material& m) { return !m.unlit && kernels::luminance(m.emission) > 0; }
 
 bool has_maps(const kernels::Material& m) {
@@ -227,7 +231,7 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
 
 std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) const {
     std::vector<std::uint64_t> uses(scene_.geometries.size(), 0);
-    const auto may_be = [](const SnapshotInstance& instance) { return instance.fixed && instance.deformed < 0; };
+    const auto may_be = [](const SnapshotInstance& instance) { return instance.fixed_place >= 0 && instance.deformed < 0; };
     for (const SnapshotInstance& instance : snapshot.instances) uses[instance.geometry] += may_be(instance) ? 1 : 0;
     std::vector<bool> flattened(snapshot.instances.size(), false);
     for (std::size_t i = 0; i < flattened.size(); ++i) {
@@ -237,9 +241,10 @@ std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) c
         if (!may_be(instance) || instance.mask == 0 ||
             (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles))
             continue;
-        const glm::dmat3 linear(instance.world_from_geometry);
+        const glm::dmat4& place = fixed_place(snapshot, instance);
+        const glm::dmat3 linear(place);
         const double size = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
-        const double distance = glm::length(glm::dvec3(instance.world_from_geometry[3]) - snapshot.render_origin);
+        const double distance = glm::length(glm::dvec3(place[3]) - snapshot.render_origin);
         flattened[i] = size > kMinRelativeSize * distance;
     }
     return flattened;
@@ -268,7 +273,7 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
     tbb::parallel_for(std::size_t{0}, flattened.size(), [&](std::size_t i) {
         if (!flattened[i] || snapshot.instances[i].mask == 0) return;
         const SnapshotInstance& instance = snapshot.instances[i];
-        baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], instance.world_from_geometry,
+        baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], fixed_place(snapshot, instance),
                                                      snapshot.render_origin);
     });
     for (std::size_t i = 0; i < baked_.size(); ++i) {
