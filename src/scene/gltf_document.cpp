@@ -23,7 +23,8 @@ constexpr int kDeepestJson = 64;                            // glTF itself needs
 constexpr std::string_view kDamaged = "the file is damaged; export it anew";
 
 constexpr std::string_view kSupported[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
-                                           "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_variants", "KHR_node_visibility"};
+                                           "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_variants", "KHR_node_visibility",
+                                           "EXT_mesh_gpu_instancing"};
 
 /// Extensions that replace data: without them a file is useless unless it carries a fallback.
 struct Replacement {
@@ -37,7 +38,6 @@ constexpr Replacement kReplacements[] = {
     {"EXT_texture_webp", "WebP textures", "export the textures as PNG or JPEG"},
     {"EXT_texture_avif", "AVIF textures", "export the textures as PNG or JPEG"},
     {"MSFT_texture_dds", "DDS textures", "export the textures as PNG or JPEG"},
-    {"EXT_mesh_gpu_instancing", "GPU instancing", "export the instances as nodes"},
 };
 
 bool contains(const Json& object, std::string_view key) { return object.is_object() && object.find(key) != object.end(); }
@@ -143,7 +143,6 @@ GltfDocument::GltfDocument(const std::filesystem::path& path, const SourceLocati
     check_version();
     check_extensions();
     if (auto problems = check_schema(json_, file_); !problems.empty()) throw InputError(std::move(problems));
-    check_features();
     load_model();
     load_buffers();
     check_views();
@@ -250,18 +249,6 @@ void GltfDocument::check_extensions() {
         if (is_supported(name) || std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
         seen.push_back(name);
         warnings.push_back(warning("/extensionsUsed", fmt::format("names {}, which is not supported and has no effect", name)));
-    }
-}
-
-/// What is not built is refused by its name, before anything would be drawn wrongly.
-void GltfDocument::check_features() const {
-    const auto refuse = [&](const std::string& pointer, const char* what, const char* remedy) {
-        fail(pointer, fmt::format("uses {}, which Kadr does not support yet", what), remedy);
-    };
-    const Json& nodes = items(json_, "nodes");
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (has_extension(nodes[i], "EXT_mesh_gpu_instancing"))
-            refuse(fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing", i), "GPU instancing (EXT_mesh_gpu_instancing)", "export the instances as nodes");
     }
 }
 

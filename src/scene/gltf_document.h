@@ -58,7 +58,6 @@ private:
     void parse(std::string_view text);
     void check_version() const;
     void check_extensions();
-    void check_features() const;
     void load_buffers();
     void check_views() const;
     void check_accessors() const;

@@ -179,6 +179,8 @@ constexpr Property kProperties[] = {
     {"light_use", "light", Type::index, "lights", kRequired},
     {"node_extensions", "KHR_node_visibility", Type::object, "visibility"},
     {"visibility", "visible", Type::boolean},
+    {"node_extensions", "EXT_mesh_gpu_instancing", Type::object, "instancing"},
+    {"instancing", "attributes", Type::index_map, "accessors", kRequired},
 
     {"light", "name", Type::string},
     {"light", "type", Type::string, "directional|point|spot", kRequired},

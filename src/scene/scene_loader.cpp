@@ -10,6 +10,7 @@
 #include "scene/deformation_reader.h"
 #include "scene/geometry_builder.h"
 #include "scene/gltf_document.h"
+#include "scene/instancing_reader.h"
 #include "scene/material_reader.h"
 #include "scene/node_reader.h"
 #include "scene/scene.h"
@@ -42,6 +43,7 @@ public:
 
     Scene load(const LoadOptions& options) {
         scene_.nodes = read_nodes(document_);
+        InstancingReader(document_).read(scene_.nodes, scene_.placement_sets);
         std::vector<int> file_roots = read_roots(document_, scene_.nodes);
         scene_.lights = read_lights(document_);
         scene_.cameras = read_cameras(document_);
@@ -237,7 +239,7 @@ private:
 
 /// Where a file's shared tables begin in the whole scene.
 struct Offsets {
-    int geometry, material, light, camera, material_count;
+    int geometry, material, light, camera, material_count, placement_set;
 };
 
 template <class T>
@@ -260,7 +262,7 @@ Offsets append_tables(Scene& scene, Scene& file) {
     append(scene.material_sources, file.material_sources);
     const int material_count = static_cast<int>(file.materials.size());
     append(scene.warnings, file.warnings);
-    return {append(scene.geometries, file.geometries), append(scene.materials, file.materials), append(scene.lights, file.lights), append(scene.cameras, file.cameras), material_count};
+    return {append(scene.geometries, file.geometries), append(scene.materials, file.materials), append(scene.lights, file.lights), append(scene.cameras, file.cameras), material_count, append(scene.placement_sets, file.placement_sets)};
 }
 
 /// Where the table begins that a property's index counts in. Materials are found by their file's numbers.
@@ -294,6 +296,7 @@ void append_tree(Scene& scene, const Scene& file, const Offsets& offsets, const 
             primitive.material += offsets.material;
             for (VariantMaterial& variant : primitive.variants) variant.material += offsets.material;
         }
+        node.placement_set = shifted(node.placement_set, offsets.placement_set);
         node.light = shifted(node.light, offsets.light);
         node.camera = shifted(node.camera, offsets.camera);
         node.skin = shifted(node.skin, static_cast<int>(scene.skins.size()));
