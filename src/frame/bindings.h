@@ -42,6 +42,8 @@ struct Bindings {
     glm::dmat4 node_transform(int node, const Placement* copy, double time_s) const;
     /// The first copy of a file, which references of the shot mean; null: it is not repeated.
     const Placement* first_copy(int file) const { return instances.copies_of(file).empty() ? nullptr : &instances.copies_of(file).front(); }
+    /// world_from_node of the first copy.
+    glm::dmat4 node_transform(int node, double time_s) const { return node_transform(node, first_copy(rig.file_of(node)), time_s); }
     /// World position of a node or of a scene's root.
     glm::dvec3 position_of(const NodeReference& reference, double time_s) const;
     const InstanceSeed& seed_of(std::uint32_t id) const { return *instances[id].seed; }

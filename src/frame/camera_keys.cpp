@@ -115,8 +115,7 @@ CameraState placed_by_shot(const BoundShot& shot, double time_s) {
 CameraState placed_by_node(const BoundShot& shot, double time_s) {
     const int node = shot.bindings().camera_node;
     const SceneCamera& source = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].camera)];
-    const Bindings& bindings = shot.bindings();
-    const glm::dmat4 world = bindings.node_transform(node, bindings.first_copy(bindings.rig.file_of(node)), time_s);
+    const glm::dmat4 world = shot.bindings().node_transform(node, time_s);
     CameraState camera;
     camera.position = glm::dvec3(world[3]);
     const glm::dvec3 forward = -glm::dvec3(world[2]);

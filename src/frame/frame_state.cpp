@@ -236,7 +236,7 @@ glm::dmat4 Bindings::node_transform(int node, const Placement* copy, double time
 glm::dvec3 Bindings::position_of(const NodeReference& reference, double time_s) const {
     const ResolvedReference& at = references.at(reference.text);
     if (at.node < 0) return glm::dvec3(rig.scene_transform(at.file, time_s)[3]);
-    return glm::dvec3(node_transform(at.node, first_copy(at.file), time_s)[3]);
+    return glm::dvec3(node_transform(at.node, time_s)[3]);
 }
 
 glm::dmat4 Bindings::copied_from_geometry(const Scene& scene, const Instance& instance) const {

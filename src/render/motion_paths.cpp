@@ -43,8 +43,8 @@ struct Mover {
 };
 
 glm::dmat4 place_of(const BoundShot& shot, const Mover& mover, double time_s) {
-    const NodeRig& rig = shot.bindings().rig;
-    return mover.node < 0 ? rig.scene_transform(mover.file, time_s) : rig.node_transform(mover.node, time_s);
+    const Bindings& bindings = shot.bindings();
+    return mover.node < 0 ? bindings.rig.scene_transform(mover.file, time_s) : bindings.node_transform(mover.node, time_s);
 }
 
 Mover mover_of(const BoundShot& shot, int node) {
@@ -67,7 +67,7 @@ std::map<Mover, Box> moving_boxes(const BoundShot& shot, double now_s) {
         if (is_new) box->second = box_of(shot.scene().geometries[seed.geometry]);
         const Mover mover = mover_of(shot, seed.node);
         const glm::dmat4 mover_from_node =
-            glm::inverse(place_of(shot, mover, now_s)) * shot.bindings().rig.node_transform(seed.node, now_s);
+            glm::inverse(place_of(shot, mover, now_s)) * shot.bindings().node_transform(seed.node, now_s);
         for (int i = 0; i < 8; ++i)
             boxes[mover].add(glm::dvec3(mover_from_node * glm::dvec4(box->second.corner(i), 1)));
     }
@@ -129,14 +129,16 @@ void add_lights(const BoundShot& shot, std::vector<MotionPath>& paths) {
         const auto position = [&light](double time_s) { return evaluate(light.position, time_s); };
         paths.push_back({MotionPath::Subject::light, light.id, position, 0});
     }
-    for (const int node : shot.bindings().light_nodes) {
-        const NodeRig& rig = shot.bindings().rig;
+    for (const LightSeed& seed : shot.bindings().lights) {
+        const Bindings& bindings = shot.bindings();
+        const int node = seed.node;
+        if (seed.copy != bindings.first_copy(bindings.rig.file_of(node))) continue;
         if (shot.scene()
                 .lights[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].light)]
                 .kind == kernels::LightKind::directional)
             continue;
-        const auto position = [&rig, node](double time_s) { return glm::dvec3(rig.node_transform(node, time_s)[3]); };
-        paths.push_back({MotionPath::Subject::light, node_path(shot.scene(), rig.file_of(node), node), position, 0});
+        const auto position = [&bindings, seed](double t) { return glm::dvec3(bindings.node_transform(seed.node, seed.copy, t)[3]); };
+        paths.push_back({MotionPath::Subject::light, node_path(shot.scene(), bindings.rig.file_of(node), node), position, 0});
     }
 }
 

@@ -21,10 +21,9 @@ struct Ball {
 
 /// The middle of all meshes, each counted once.
 glm::dvec3 middle_of_meshes(const BoundShot& shot, double now_s) {
-    const std::vector<glm::dmat4> nodes = shot.node_transforms(now_s);
     glm::dvec3 sum(0);
     for (const InstanceSeed& seed : shot.bindings().seeds)
-        sum += glm::dvec3(nodes[static_cast<std::size_t>(seed.node)] *
+        sum += glm::dvec3(shot.bindings().node_transform(seed.node, now_s) *
                           glm::dvec4(shot.scene().geometries[seed.geometry].centre, 1));
     return sum / static_cast<double>(std::max<std::size_t>(1, shot.bindings().seeds.size()));
 }

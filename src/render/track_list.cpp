@@ -92,6 +92,9 @@ void add_material(TrackList& list, const std::string& scene, const MaterialSpec&
 void add_scene(TrackList& list, const SceneSpec& scene) {
     const std::string name = "scenes." + scene.id;
     list.add(name + ".transform", scene.transform);
+    for (std::size_t i = 0; i < scene.layers.size(); ++i)
+        list.add(name + ".animation." + (scene.layers.size() > 1 ? std::to_string(i) + "." : "") + "weight", scene.layers[i].weight);
+    for (const NodeOverride& node : scene.nodes) list.add(name + ".nodes." + node.name, node.transform);
     list.add(name + ".visible", scene.visible);
     for (const MaterialSpec& material : scene.materials) add_material(list, name, material);
 }
@@ -132,18 +135,6 @@ void add_light(TrackList& list, const LightSpec& light) {
     list.add(name + ".outer", light.outer_rad);
     list.add(name + ".radius", light.radius_m);
     list.add(name + ".size", light.size_m);
-}
-
-}  // namespace
-
-namespace {
-
-void add_scene(TrackList& list, const SceneSpec& scene) {
-    const std::string name = "scenes." + scene.id;
-    list.add(name + ".transform", scene.transform);
-    for (std::size_t i = 0; i < scene.layers.size(); ++i)
-        list.add(name + ".animation." + (scene.layers.size() > 1 ? std::to_string(i) + "." : "") + "weight", scene.layers[i].weight);
-    for (const NodeOverride& node : scene.nodes) list.add(name + ".nodes." + node.name, node.transform);
 }
 
 }  // namespace

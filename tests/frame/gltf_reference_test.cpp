@@ -263,8 +263,8 @@ TEST_P(GltfReference, AgreesAtRandomTimes) {
 INSTANTIATE_TEST_SUITE_P(Outside, GltfReference,
                          testing::Values("InterpolationTest", "blender-io-06_parent-inverse-anim", "BoxAnimated", "cube-animation-playcanvas", "CesiumMilkTruck",
                                          "RiggedSimple", "Fox", "blender-io-01_cs_translate"),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& tested) {
+                             std::string name = tested.param;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });
