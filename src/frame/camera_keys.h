@@ -51,6 +51,12 @@ public:
         const double aside = (glm::dot(to_point, to_point) - along * along) / (depth * depth);
         return distance * scale_ / depth * std::sqrt(1 + std::min(std::max(aside, 0.0), corner_));
     }
+    /// An upper bound of that for all points within `radius` of `centre`.
+    double most_pixels(double distance, const glm::dvec3& centre, double radius, double nearest) const {
+        if (orthographic_) return distance * scale_;
+        const double depth = std::max(glm::dot(centre - position_, forward_) - radius, nearest);
+        return distance * scale_ / depth * std::sqrt(1 + corner_);
+    }
 
 private:
     glm::dvec3 position_, forward_;

@@ -66,9 +66,15 @@ double radius_of(const glm::dmat4& m) {
     return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
-/// Largest screen-space distance between two placements of [-1, 1]^3.
-double pixels_between(const glm::dmat4& is, const glm::dmat4& wanted, const PixelScale& scale) {
+/// Largest screen-space distance between two placements of [-1, 1]^3; a bound of it where that is below `negligible`.
+double pixels_between(const glm::dmat4& is, const glm::dmat4& wanted, const PixelScale& scale, double negligible) {
     const double nearest = std::max(kBesideCamera * radius_of(wanted), 1e-30);
+    // Most instances hardly stray: one bound for all corners spares looking at each.
+    double apart = 0, radius = 0;
+    for (int column = 0; column < 4; ++column) apart += glm::length(glm::dvec3(is[column] - wanted[column]));
+    for (int column = 0; column < 3; ++column) radius += glm::length(glm::dvec3(wanted[column]));
+    const double bound = scale.most_pixels(apart, glm::dvec3(wanted[3]), radius, nearest);
+    if (bound <= negligible) return bound;
     double worst = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 at(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1, 1);
@@ -92,6 +98,7 @@ class Fit {
 public:
     Fit(std::vector<glm::dmat4> places, const Interval& interval, const std::vector<PixelScale>& scales)
         : places_(std::move(places)), interval_(interval), scales_(scales) {
+        parts_.reserve(places_.size());
         for (const glm::dmat4& place : places_) parts_.push_back(decompose(place));
     }
 
@@ -104,10 +111,11 @@ public:
     /// Gives vanishing scales (an object that pops up from nothing) a tiny size, with the rotation of the nearest time
     /// at which there is one. @return false where a scale changes its sign: no path leads through zero
     bool open_up() {
+        if (std::none_of(parts_.begin(), parts_.end(), is_singular)) return keeps_its_sign();
         const std::vector<Decomposition> found = parts_;
         for (std::size_t i = 0; i < parts_.size(); ++i)
             if (is_singular(found[i])) parts_[i] = opened(i, found), places_[i] = compose(parts_[i]);
-        return std::all_of(parts_.begin(), parts_.end(), [&](const Decomposition& p) { return (p.scale.z < 0) == (parts_[0].scale.z < 0); });
+        return keeps_its_sign();
     }
 
     /// Radians that the rotation turns in the liveliest segment.
@@ -126,14 +134,14 @@ public:
         double worst = 0;
         for (std::size_t i = 0; i < places_.size() && worst <= enough; ++i)
             if (const std::size_t from = i / 4 * 4; i != from)
-                worst = std::max(worst, pixels_between(compose(interpolate(parts_[from], parts_[from + 4], 0.25 * static_cast<double>(i - from))), places_[i], scales_[i]));
+                worst = std::max(worst, pixels_between(compose(interpolate(parts_[from], parts_[from + 4], 0.25 * static_cast<double>(i - from))), places_[i], scales_[i], negligible()));
         return worst;
     }
 
     /// Whether two linearly interpolated matrices would do.
     bool linear(double enough) const {
         for (std::size_t i = 1; i < 4; ++i)
-            if (places_.size() != 5 || pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i]) > enough) return false;
+            if (places_.size() != 5 || pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i], negligible()) > enough) return false;
         return true;
     }
 
@@ -142,6 +150,11 @@ public:
     }
 
 private:
+    double negligible() const { return 0.1 * interval_.tolerance_px; }
+    bool keeps_its_sign() const {
+        return std::all_of(parts_.begin(), parts_.end(), [&](const Decomposition& p) { return (p.scale.z < 0) == (parts_[0].scale.z < 0); });
+    }
+
     Decomposition opened(std::size_t at, const std::vector<Decomposition>& found) const {
         std::size_t nearest = at, distance = found.size();
         for (std::size_t i = 0; i < found.size(); ++i)
