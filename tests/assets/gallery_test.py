@@ -24,7 +24,7 @@ ASSETS = Path(sys.argv[2] if len(sys.argv) > 2 else
 MALFORMED = ASSETS / "malformed"
 
 # What Kadr may leave to later, as its refusals call it: features, extensions that a file requires, newer versions of glTF.
-FEATURES = re.compile(r"EXT_mesh_gpu_instancing|/extensionsRequired/\d+ is (KHR|EXT)_\w+|/asset/minVersion")
+FEATURES = re.compile(r"/extensionsRequired/\d+ is (KHR|EXT)_\w+|/asset/minVersion")
 FEWEST_RENDERED = 100
 CPU_SECONDS = 2.0  # for a malformed file: processor time, since other programs may hold the processors
 WALL_SECONDS = 30.0
