@@ -1,5 +1,6 @@
 #include "frame/camera_keys.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ namespace kadr {
 namespace {
 
 constexpr double kDefaultFocalMm = 50;
+constexpr double kWidestField = 3.1;  // radians: the picture's plane has to be somewhere
 constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees
 // An interpolated camera has to keep within the tolerance between the times that are checked, too.
 constexpr double kMargin = 0.9;
@@ -112,9 +114,32 @@ CameraState placed_by_shot(const BoundShot& shot, double time_s) {
     return camera;
 }
 
+const std::vector<DrivenProperty>& driven_of(const BoundShot& shot) {
+    static const std::vector<DrivenProperty> none;
+    const Bindings& bindings = shot.bindings();
+    if (bindings.camera_node < 0) return none;
+    const int camera = shot.scene().nodes[static_cast<std::size_t>(bindings.camera_node)].camera;
+    return bindings.properties.of(bindings.rig.file_of(bindings.camera_node), PropertyOwner::camera, camera);
+}
+
+/// An authored camera with what its clips drive. @pre camera_node >= 0
+SceneCamera source_at(const BoundShot& shot, double time_s) {
+    SceneCamera camera = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(shot.bindings().camera_node)].camera)];
+    for (const DrivenProperty& driven : driven_of(shot)) {
+        if (!driven.plays(time_s)) continue;
+        const double value = driven.number(time_s);
+        if (driven.property == Property::camera_yfov) camera.yfov_rad = std::clamp(value, 1e-6, kWidestField);
+        else if (driven.property == Property::camera_xmag) camera.xmag = value;
+        else if (driven.property == Property::camera_ymag) camera.ymag = value;
+        else if (driven.property == Property::camera_znear) camera.znear = std::max(value, 0.0);
+        else if (driven.property == Property::camera_zfar) camera.zfar = std::max(value, 0.0);
+    }
+    return camera;
+}
+
 CameraState placed_by_node(const BoundShot& shot, double time_s) {
     const int node = shot.bindings().camera_node;
-    const SceneCamera& source = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].camera)];
+    const SceneCamera source = source_at(shot, time_s);
     const glm::dmat4 world = shot.bindings().node_transform(node, time_s);
     CameraState camera;
     camera.position = glm::dvec3(world[3]);
@@ -126,6 +151,8 @@ CameraState placed_by_node(const BoundShot& shot, double time_s) {
     camera.rotation = look_rotation(glm::normalize(forward), glm::dvec3(world[1]));
     // The near plane is the one hint of scale that an authored camera gives; artists put it at a hundredth or less.
     camera.subject_distance = camera.focus_distance = std::max(1.0, 100 * source.znear);
+    if (source.orthographic && source.ymag == 0)
+        refuse(shot.shot().camera, fmt::format("the ymag of camera '{}' is animated to 0 at {} s", source.name, format_number(time_s)), "expected a number other than 0");
     set_authored(camera, source, aspect_of(shot.shot().image));
     return camera;
 }
@@ -238,6 +265,7 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
         add(key_times(shot.shot().scenes[static_cast<std::size_t>(shot.scene_of(reference))].transform, open_s, close_s));
     };
     if (bindings.camera_node >= 0) add(bindings.rig.key_times_of(bindings.camera_node, open_s, close_s));
+    for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s));
     if (spec.around) add_node(*spec.around);
     if (const auto* node = std::get_if<NodeReference>(&spec.look_at); node && !spec.gltf) add_node(*node);
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
@@ -277,13 +305,12 @@ std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double o
     return result;
 }
 
-kernels::Camera make_camera(const BoundShot& shot) {
+kernels::Camera make_camera(const BoundShot& shot, double time_s) {
     kernels::Camera camera{};
     camera.blades = shot.shot().camera.blades;
     camera.far_clip = std::numeric_limits<float>::infinity();
-    const int node = shot.bindings().camera_node;
-    if (node < 0) return camera;
-    const SceneCamera& source = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].camera)];
+    if (shot.bindings().camera_node < 0) return camera;
+    const SceneCamera source = source_at(shot, time_s);
     camera.orthographic = source.orthographic;
     camera.near_clip = static_cast<float>(source.znear);
     if (source.zfar > 0) camera.far_clip = static_cast<float>(source.zfar);
@@ -296,6 +323,10 @@ std::vector<double> camera_discontinuities(const BoundShot& shot, double begin_s
         const std::vector<double> jumps = discontinuities(track, begin_s, end_s);
         times.insert(times.end(), jumps.begin(), jumps.end());
     });
+    for (const DrivenProperty& driven : driven_of(shot)) {
+        const std::vector<double> jumps = driven.discontinuities(begin_s, end_s);
+        times.insert(times.end(), jumps.begin(), jumps.end());
+    }
     return times;
 }
 

@@ -30,8 +30,8 @@ CameraState camera_at(const BoundShot& shot, double time_s);
 /// many as the motion tolerance and 10 degrees a step ask for.
 std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin);
 
-/// The parts of the camera that do not change within a frame.
-kernels::Camera make_camera(const BoundShot& shot);
+/// The parts of the camera that do not change within a part of the shutter; its clip planes are those of `time_s`.
+kernels::Camera make_camera(const BoundShot& shot, double time_s);
 
 /// Jumps and keys of everything the camera depends on, inside (begin, end).
 std::vector<double> camera_discontinuities(const BoundShot& shot, double begin_s, double end_s);

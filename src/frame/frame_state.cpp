@@ -46,7 +46,8 @@ std::string beyond_direct(const LightSpec& light) {
     if (light.kind == LightKind::area) return fmt::format("lights.{}.type is area", light.id);
     if (light.kind != LightKind::directional && varies(light.radius_m)) return fmt::format("lights.{}.radius is animated", light.id);
     if (light.kind != LightKind::directional && evaluate(light.radius_m, 0) > 0) return fmt::format("lights.{}.radius is above 0", light.id);
-    if (light.kind == LightKind::directional && light.angular_diameter_rad > 0) return fmt::format("lights.{}.angular_diameter is above 0", light.id);
+    if (light.kind == LightKind::directional && varies(light.angular_diameter_rad)) return fmt::format("lights.{}.angular_diameter is animated", light.id);
+    if (light.kind == LightKind::directional && evaluate(light.angular_diameter_rad, 0) > 0) return fmt::format("lights.{}.angular_diameter is above 0", light.id);
     return {};
 }
 
@@ -275,7 +276,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     sequence_ = Sequence(timing_, shot.shutter);
     auto bindings = std::make_shared<Bindings>(
         Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
-    bindings->visibility = VisibilityRig(shot, scene, bindings->properties);
+    bindings->visibility = VisibilityRig(shot, scene, scenes, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
     bind_deformers(*this, *bindings);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -59,11 +60,11 @@ kernels::Light light_at(const BoundShot& shot, const LightSpec& spec, double tim
     light.falloff = static_cast<kernels::SpotFalloff>(spec.falloff);
     light.direction = to_float(direction);
     if (spec.kind == LightKind::directional) {
-        light.cos_angular_radius = static_cast<float>(std::cos(0.5 * spec.angular_diameter_rad));
+        light.cos_angular_radius = static_cast<float>(std::cos(0.5 * evaluate(spec.angular_diameter_rad, time_s)));
         return light;
     }
     light.position = to_float(position - origin);
-    light.range = static_cast<float>(spec.range_m);
+    light.range = static_cast<float>(evaluate(spec.range_m, time_s));
     if (spec.kind == LightKind::area) {
         set_rectangle(light, direction, evaluate(spec.size_m, time_s));
     } else {
@@ -73,11 +74,31 @@ kernels::Light light_at(const BoundShot& shot, const LightSpec& spec, double tim
     return light;
 }
 
+int light_of(const BoundShot& shot, int node) { return shot.scene().nodes[static_cast<std::size_t>(node)].light; }
+
+const std::vector<DrivenProperty>& driven_of(const BoundShot& shot, int node) {
+    const Bindings& bindings = shot.bindings();
+    return bindings.properties.of(bindings.rig.file_of(node), PropertyOwner::light, light_of(shot, node));
+}
+
+/// A light of a file with what its clips drive.
+SceneLight source_at(const BoundShot& shot, int node, double time_s) {
+    SceneLight light = shot.scene().lights[static_cast<std::size_t>(light_of(shot, node))];
+    for (const DrivenProperty& driven : driven_of(shot, node)) {
+        if (!driven.plays(time_s)) continue;
+        if (driven.property == Property::light_color) light.color = glm::max(driven.triple(time_s), glm::dvec3(0));
+        else if (driven.property == Property::light_intensity) light.intensity = std::max(driven.number(time_s), 0.0);
+        else if (driven.property == Property::light_range) light.range_m = std::max(driven.number(time_s), 0.0);
+        else if (driven.property == Property::light_inner) light.inner_rad = std::max(driven.number(time_s), 0.0);
+        else if (driven.property == Property::light_outer) light.outer_rad = std::clamp(driven.number(time_s), 0.0, 0.5 * std::numbers::pi);
+    }
+    return light;
+}
+
 /// KHR_lights_punctual: along the node's -z; scale has no meaning for a light.
 kernels::Light light_at(const BoundShot& shot, const LightSeed& seed, double time_s, const glm::dvec3& origin) {
-    const int node = seed.node;
-    const SceneLight& source = shot.scene().lights[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(node)].light)];
-    const glm::dmat4 world = shot.bindings().node_transform(node, seed.copy, time_s);
+    const SceneLight source = source_at(shot, seed.node, time_s);
+    const glm::dmat4 world = shot.bindings().node_transform(seed.node, seed.copy, time_s);
     const double length = glm::length(glm::dvec3(world[2]));
     if (!is_finite(world))
         throw InputError(fmt::format("the node of light '{}' has a transform that is not finite at {} s", source.name, format_number(time_s)),
@@ -97,25 +118,39 @@ bool same(const kernels::Light& a, const kernels::Light& b) { return std::memcmp
 
 double length_of(const kernels::Vec3f& v) { return std::sqrt(static_cast<double>(dot(v, v))); }
 
-/// Whether half-way values lie near enough to the true ones. @param near_m  metres that may be called nothing
-bool fits(const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted, double near_m) {
+/// How far half-way values lie from the true ones, as SceneSnapshot::light_error has it.
+/// @param distance_m  of what the camera looks at
+double deviation(const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted, double distance_m) {
     const auto t = static_cast<float>(u);
-    const auto off = [t](const kernels::Vec3f& from, const kernels::Vec3f& to, const kernels::Vec3f& is) {
-        return length_of(from + (to - from) * t - is);
+    const auto off = [t](const kernels::Vec3f& from, const kernels::Vec3f& to, const kernels::Vec3f& is, double scale) {
+        const double distance = length_of(from + (to - from) * t - is);
+        return distance > 0 ? distance / scale : 0;
     };
-    const auto close = [t](float from, float to, float is, double scale) {
-        return std::abs(std::lerp(static_cast<double>(from), static_cast<double>(to), static_cast<double>(t)) - is) <= kRelativeTolerance * scale;
+    const auto off_by = [u](double from, double to, double is, double scale) {
+        const double distance = std::abs(std::lerp(from, to, u) - is);
+        return distance > 0 ? distance / scale : 0;
     };
     const double brightness = std::max(length_of(a.radiance), length_of(b.radiance));
     const double size = length_of(a.axis_u) + length_of(a.axis_v);
-    return off(a.radiance, b.radiance, wanted.radiance) <= kRelativeTolerance * brightness &&
-           off(a.position, b.position, wanted.position) <= near_m &&
-           off(a.direction, b.direction, wanted.direction) <= kRelativeTolerance &&
-           off(a.axis_u, b.axis_u, wanted.axis_u) <= kRelativeTolerance * size &&
-           off(a.axis_v, b.axis_v, wanted.axis_v) <= kRelativeTolerance * size &&
-           close(a.cos_inner, b.cos_inner, wanted.cos_inner, 1) && close(a.cos_outer, b.cos_outer, wanted.cos_outer, 1) &&
-           close(a.inner_rad, b.inner_rad, wanted.inner_rad, 1) && close(a.outer_rad, b.outer_rad, wanted.outer_rad, 1) &&
-           close(a.radius, b.radius, wanted.radius, std::max(a.radius, b.radius));
+    return std::max({off(a.radiance, b.radiance, wanted.radiance, brightness), off(a.position, b.position, wanted.position, distance_m),
+                     off(a.direction, b.direction, wanted.direction, 1), off(a.axis_u, b.axis_u, wanted.axis_u, size), off(a.axis_v, b.axis_v, wanted.axis_v, size),
+                     off_by(a.cos_inner, b.cos_inner, wanted.cos_inner, 1), off_by(a.cos_outer, b.cos_outer, wanted.cos_outer, 1),
+                     off_by(a.inner_rad, b.inner_rad, wanted.inner_rad, 1), off_by(a.outer_rad, b.outer_rad, wanted.outer_rad, 1),
+                     off_by(a.radius, b.radius, wanted.radius, std::max(a.radius, b.radius)), off_by(a.range, b.range, wanted.range, std::max(a.range, b.range)),
+                     // Of the solid angle: 2 pi (1 - cos). A cosine near 1 has only 24 bits.
+                     off_by(a.cos_angular_radius, b.cos_angular_radius, wanted.cos_angular_radius,
+                            std::max(1.0 - std::min(a.cos_angular_radius, b.cos_angular_radius), 1e-4))});
+}
+
+/// A light that has a surface at one key has one at all, however small: the kernels choose how to sample it once.
+void keep_surface(std::vector<kernels::Light>& keys) {
+    constexpr float kSmallest = 1e-3f;  // of the largest
+    float radius = 0, cosine = 1;
+    for (const kernels::Light& key : keys) radius = std::max(radius, key.radius), cosine = std::min(cosine, key.cos_angular_radius);
+    for (kernels::Light& key : keys) {
+        key.radius = std::max(key.radius, kSmallest * radius);
+        if (cosine < 1) key.cos_angular_radius = std::min(key.cos_angular_radius, 1 - std::max(kSmallest * (1 - cosine), 0x1p-24f));
+    }
 }
 
 template <class Visit>
@@ -128,8 +163,11 @@ void visit_tracks(const LightSpec& spec, Visit visit) {
         if (const auto* point = std::get_if<PositionTrack>(&*spec.look_at)) visit(*point);
     visit(spec.inner_rad);
     visit(spec.outer_rad);
+    visit(spec.range_m);
     visit(spec.radius_m);
+    visit(spec.angular_diameter_rad);
     visit(spec.size_m);
+    visit(spec.visible);
 }
 
 void append(std::vector<double>& all, const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); }
@@ -144,40 +182,59 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSpec& spec, d
 }
 
 template <class At>
-void add_keys(std::vector<double> key_times, double open_s, double close_s, double near_m, At at, SceneSnapshot& snapshot) {
+void add_keys(std::vector<double> key_times, double open_s, double close_s, double distance_m, At at, SceneSnapshot& snapshot) {
+    const auto at_step = [&](double u) { return at(open_s + u * (close_s - open_s)); };
     std::vector<kernels::Light> keys{at(open_s)};
     if (close_s > open_s) {
         for (double& time : key_times) time = (time - open_s) / (close_s - open_s);
         const int at_least = static_cast<int>(std::min<std::size_t>(key_times.size() + 1, kMostLightSegments));
+        double error = 0;
         keys = fit_keys(
-            even_segments_for(key_times), at_least, kMostLightSegments, [&](double u) { return at(open_s + u * (close_s - open_s)); }, same,
-            [near_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) { return fits(a, b, u, wanted, near_m); });
+            even_segments_for(key_times), at_least, kMostLightSegments, at_step, same,
+            [distance_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) {
+                return deviation(a, b, u, wanted, distance_m) <= kRelativeTolerance;
+            });
+        for (std::size_t i = 0; i + 1 < keys.size(); ++i)
+            for (int quarter = 1; quarter < 4; ++quarter) {
+                const double u = (static_cast<double>(i) + 0.25 * quarter) / static_cast<double>(keys.size() - 1);
+                error = std::max(error, deviation(keys[i], keys[i + 1], 0.25 * quarter, at_step(u), distance_m));
+            }
+        snapshot.light_error = std::max(snapshot.light_error, error);
     }
+    keep_surface(keys);
     snapshot.lights.push_back({static_cast<std::uint32_t>(snapshot.light_keys.size()), static_cast<std::uint32_t>(keys.size())});
     snapshot.light_keys.insert(snapshot.light_keys.end(), keys.begin(), keys.end());
+}
+
+std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, double open_s, double close_s) {
+    std::vector<double> times = shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.copy ? seed.copy->clip_offset_s : 0);
+    for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.key_times(open_s, close_s));
+    return times;
 }
 
 }  // namespace
 
 void add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const glm::dvec3 origin = snapshot.render_origin;
-    const double near_m = kRelativeTolerance * camera_at(shot, open_s).subject_distance;
+    const double distance_m = camera_at(shot, open_s).subject_distance;
+    const double middle_s = 0.5 * (open_s + close_s);  // switches do not change within a part of the shutter
     for (const LightSpec& spec : shot.shot().lights)
-        add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, near_m,
-                 [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
-    // Switches do not change within a part of the shutter.
-    const VisibilityRig::States states = shot.bindings().visibility.at(0.5 * (open_s + close_s));
-    for (const LightSeed& seed : shot.bindings().lights) {
-        if (!states.visible(seed.node)) continue;
-        add_keys(shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.copy ? seed.copy->clip_offset_s : 0), open_s, close_s, near_m,
-                 [&](double time) { return light_at(shot, seed, time, origin); }, snapshot);
-    }
+        if (is_on(spec.visible, middle_s))
+            add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance_m,
+                     [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
+    const VisibilityRig::States states = shot.bindings().visibility.at(middle_s);
+    for (const LightSeed& seed : shot.bindings().lights)
+        if (states.visible(seed.node))
+            add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
+                     [&](double time) { return light_at(shot, seed, time, origin); }, snapshot);
 }
 
 std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s) {
     std::vector<double> times;
     for (const LightSpec& spec : shot.shot().lights)
         visit_tracks(spec, [&](const auto& track) { append(times, discontinuities(track, begin_s, end_s)); });
+    for (const LightSeed& seed : shot.bindings().lights)
+        for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.discontinuities(begin_s, end_s));
     return times;
 }
 

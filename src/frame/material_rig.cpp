@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "base/text.h"
+#include "frame/change.h"
 #include "frame/problem.h"
 
 namespace kadr {
@@ -93,18 +94,41 @@ void drive_all(std::vector<DrivenProperty>& all, const MaterialSpec& spec) {
     drive(all, Property::normal_scale, spec.normal_scale);
 }
 
-constexpr int kTimes = 5;  ///< even steps over an interval
+using Materials = std::array<kernels::Material, kChangeSteps>;
 
-/// Whether five values of something that radiance is linear in have another mean than the one in the middle: Boole's rule.
-bool bends(const std::array<float, kTimes>& v) {
-    constexpr double kTolerance = 1e-3;  // of the value: a tenth of a step of 8-bit output, as for lights
-    const double mean = (7.0 * (v[0] + v[4]) + 32.0 * (v[1] + v[3]) + 12.0 * v[2]) / 90;
-    return std::abs(mean - v[2]) > kTolerance * *std::max_element(v.begin(), v.end());
+template <class Value>
+Changing each(const Materials& at, Value value) {
+    Changing values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(at[i]);
+    return values;
 }
 
-bool ranges(const std::array<float, kTimes>& v, float limit) {
-    const auto [least, most] = std::minmax_element(v.begin(), v.end());
-    return *most - *least > limit;
+constexpr float kernels::Vec3f::*kChannels[] = {&kernels::Vec3f::x, &kernels::Vec3f::y, &kernels::Vec3f::z};
+
+bool factors_spread(const Materials& at) {
+    using M = kernels::Material;
+    constexpr double kFactor = 1.0 / 8;
+    for (const auto channel : kChannels)
+        if (spreads(each(at, [channel](const M& m) { return m.base_color.*channel; }), kFactor)) return true;
+    for (const auto factor : {&M::alpha, &M::metallic, &M::roughness, &M::alpha_cutoff, &M::normal_scale})
+        if (spreads(each(at, [factor](const M& m) { return m.*factor; }), kFactor)) return true;
+    return false;
+}
+
+bool emission_bends(const Materials& at) {
+    for (const auto channel : kChannels)
+        if (bends(each(at, [channel](const kernels::Material& m) { return m.emission.*channel; }))) return true;
+    return false;
+}
+
+bool textures_move(const Materials& at) {
+    using M = kernels::Material;
+    using S = kernels::TextureSlot;
+    constexpr double kTexture = 1.0 / 256;
+    for (const auto slot : {&M::base_color_texture, &M::metallic_roughness_texture, &M::normal_texture, &M::emissive_texture})
+        for (const auto entry : {&S::m00, &S::m01, &S::m02, &S::m10, &S::m11, &S::m12})
+            if ((at[0].*slot).texture >= 0 && spreads(each(at, [slot, entry](const M& m) { return m.*slot.*entry; }), kTexture)) return true;
+    return false;
 }
 
 }  // namespace
@@ -183,26 +207,11 @@ bool MaterialRig::may_emit(int material) const {
 }
 
 bool MaterialRig::changes_fast(double begin_s, double end_s) const {
-    constexpr float kFactor = 1.0f / 8, kTexture = 1.0f / 256;
-    for (const Own& own : own_) {
-        std::array<kernels::Material, kTimes> at;
-        for (int i = 0; i < kTimes; ++i) at[index(i)] = evaluate(own, begin_s + (end_s - begin_s) * i / (kTimes - 1));
-        const auto of = [&at](auto value) {
-            std::array<float, kTimes> values;
-            for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(at[i]);
-            return values;
-        };
-        using M = kernels::Material;
-        for (const auto channel : {&kernels::Vec3f::x, &kernels::Vec3f::y, &kernels::Vec3f::z})
-            if (ranges(of([channel](const M& m) { return m.base_color.*channel; }), kFactor) || bends(of([channel](const M& m) { return m.emission.*channel; }))) return true;
-        for (const auto factor : {&M::alpha, &M::metallic, &M::roughness, &M::alpha_cutoff, &M::normal_scale})
-            if (ranges(of([factor](const M& m) { return m.*factor; }), kFactor)) return true;
-        using S = kernels::TextureSlot;
-        for (const auto slot : {&M::base_color_texture, &M::metallic_roughness_texture, &M::normal_texture, &M::emissive_texture})
-            for (const auto entry : {&S::m00, &S::m01, &S::m02, &S::m10, &S::m11, &S::m12})
-                if ((at[0].*slot).texture >= 0 && ranges(of([slot, entry](const M& m) { return m.*slot.*entry; }), kTexture)) return true;
-    }
-    return false;
+    return std::any_of(own_.begin(), own_.end(), [&](const Own& own) {
+        std::array<kernels::Material, kChangeSteps> at;
+        for (int i = 0; i < kChangeSteps; ++i) at[index(i)] = evaluate(own, begin_s + (end_s - begin_s) * i / (kChangeSteps - 1));
+        return factors_spread(at) || emission_bends(at) || textures_move(at);
+    });
 }
 
 std::vector<double> MaterialRig::discontinuities(double begin_s, double end_s) const {

@@ -12,6 +12,7 @@
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
 #include "frame/deform.h"
+#include "frame/environment_at.h"
 #include "frame/light_keys.h"
 #include "frame/motion_frames.h"
 #include "frame/problem.h"
@@ -25,7 +26,6 @@ namespace {
 constexpr std::size_t kMostParts = 64;
 constexpr int kDeepestChange = 4;  // what changes fast is followed in up to 2^4 steps
 constexpr int kDeepestSplit = 6;  // 2^6 parts of 128 steps of 10 degrees: more than 200 turns in one shutter
-constexpr glm::dvec3 kSky{0.53, 0.81, 0.92};
 
 /// A part of the shutter within which everything is continuous.
 struct Part {
@@ -39,15 +39,6 @@ Part inside_of(const Part& part) {
     const double ulps = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(part.open_s), std::abs(part.close_s));
     const double inset = std::min(std::max(1e-7 * length, ulps), 0.25 * length);
     return {part.open_s + (part.jump_at_open ? inset : 0), part.close_s - (part.jump_at_close ? inset : 0), false, false};
-}
-
-std::vector<double> environment_discontinuities(const EnvironmentSpec& environment, double begin_s, double end_s) {
-    std::vector<double> times = discontinuities(environment.color, begin_s, end_s);
-    for (const Track<double>* track : {&environment.strength, &environment.rotate_rad}) {
-        const std::vector<double> more = discontinuities(*track, begin_s, end_s);
-        times.insert(times.end(), more.begin(), more.end());
-    }
-    return times;
 }
 
 /// Copies that play their clips at other times jump at other times.
@@ -91,26 +82,6 @@ std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
     return parts;
 }
 
-bool has_lights(const BoundShot& shot) { return !shot.shot().lights.empty() || !shot.bindings().lights.empty(); }
-
-kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
-/// The environment does not move within a part; its middle stands for it.
-EnvironmentSnapshot environment_at(const BoundShot& shot, double time_s) {
-    const EnvironmentSpec& spec = shot.shot().environment;
-    EnvironmentSnapshot environment;
-    environment.visible = spec.visible;
-    if (!spec.given) {
-        environment.radiance = to_float(has_lights(shot) ? glm::dvec3(0) : kSky);
-        return environment;
-    }
-    const double strength = evaluate(spec.strength, time_s);
-    environment.image = spec.image;
-    environment.radiance = to_float(spec.image ? glm::dvec3(strength) : evaluate(spec.color, time_s) * strength);
-    environment.rotate_rad = static_cast<float>(evaluate(spec.rotate_rad, time_s));
-    return environment;
-}
-
 /// Masks out what is hidden. Switches do not change within a part.
 void hide_instances(const BoundShot& shot, double time_s, std::vector<SnapshotInstance>& instances) {
     const Bindings& bindings = shot.bindings();
@@ -118,6 +89,11 @@ void hide_instances(const BoundShot& shot, double time_s, std::vector<SnapshotIn
     const VisibilityRig::States states = bindings.visibility.at(time_s);
     for (std::size_t i = 0; i < instances.size(); ++i)
         if (!states.visible(bindings.seed_of(instances[i].id).mesh_node)) instances[i].mask = 0;
+}
+
+/// Whether the middle of an interval cannot stand for what is evaluated there: materials and the environment.
+bool changes_fast(const BoundShot& shot, double begin_s, double end_s) {
+    return end_s > begin_s && (shot.bindings().materials.changes_fast(begin_s, end_s) || environment_changes_fast(shot, begin_s, end_s));
 }
 
 unsigned mixed_seed(std::uint32_t seed, int frame) {
@@ -214,7 +190,7 @@ private:
         SceneSnapshot snapshot;
         snapshot.render_origin = origin_;
         const double middle_s = 0.5 * (inside.open_s + inside.close_s);
-        if (depth < kDeepestChange && inside.close_s > inside.open_s && shot_.bindings().materials.changes_fast(inside.open_s, inside.close_s)) return add_halves(part, depth);
+        if (depth < kDeepestChange && changes_fast(shot_, inside.open_s, inside.close_s)) return add_halves(part, depth);
         if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
         add_deformed(shot_, inside.open_s, inside.close_s, snapshot);
         hide_instances(shot_, middle_s, snapshot.instances);
@@ -224,7 +200,7 @@ private:
         snapshot.close_s = part.close_s;
         set_shutter(shot_, frame_, snapshot);
         snapshot.camera_keys = make_camera_keys(shot_, inside.open_s, inside.close_s, origin_);
-        snapshot.camera = make_camera(shot_);
+        snapshot.camera = make_camera(shot_, middle_s);
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
         add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
         snapshot.environment = environment_at(shot_, middle_s);

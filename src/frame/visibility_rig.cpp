@@ -16,13 +16,16 @@ bool ever_off(const SwitchTrack& track) {
 
 }  // namespace
 
-VisibilityRig::VisibilityRig(const Shot& shot, const Scene& scene, const PropertyRig& properties) {
+VisibilityRig::VisibilityRig(const Shot& shot, const Scene& scene, const std::vector<BoundScene>& scenes, const PropertyRig& properties) {
     switch_of_.assign(scene.nodes.size(), -1);
     for (std::size_t entry = 0; entry < scene.files.size(); ++entry) {
         const SceneFile& file = scene.files[entry];
         const int above = entry_switch(shot.scenes.at(entry));
+        ByShot by_shot;
+        for (const BoundScene::Override& node : scenes[entry].overrides)
+            if (node.spec->visible) by_shot[node.node] = &*node.spec->visible;
         for (int node = file.first_node; node < file.first_node + file.node_count; ++node)
-            if (scene.nodes[index(node)].parent < 0) add_tree(scene, properties, static_cast<int>(entry), node, above);
+            if (scene.nodes[index(node)].parent < 0) add_tree(scene, by_shot, properties, static_cast<int>(entry), node, above);
     }
 }
 
@@ -32,15 +35,22 @@ int VisibilityRig::entry_switch(const SceneSpec& spec) {
     return static_cast<int>(switches_.size()) - 1;
 }
 
-void VisibilityRig::add_tree(const Scene& scene, const PropertyRig& properties, int entry, int root, int above) {
+std::optional<VisibilityRig::Switch> VisibilityRig::switch_for(bool rest, const SwitchTrack* by_shot, const std::vector<DrivenProperty>& by_clip) {
+    if (by_shot) return ever_off(*by_shot) ? std::optional(Switch{-1, rest, {}, by_shot}) : std::nullopt;
+    return rest && by_clip.empty() ? std::nullopt : std::optional(Switch{-1, rest, by_clip, nullptr});
+}
+
+void VisibilityRig::add_tree(const Scene& scene, const ByShot& by_shot, const PropertyRig& properties, int entry, int root, int above) {
     std::vector<std::pair<int, int>> open{{root, above}};
     while (!open.empty()) {
         auto [node, nearest] = open.back();
         open.pop_back();
-        const std::vector<DrivenProperty>& driven = properties.of(entry, PropertyOwner::node, node);
-        if (!scene.nodes[index(node)].visible || !driven.empty()) {
-            switches_.push_back({nearest, scene.nodes[index(node)].visible, driven, nullptr});
-            nearest = static_cast<int>(switches_.size()) - 1;
+        const auto given = by_shot.find(node);
+        auto own = switch_for(scene.nodes[index(node)].visible, given == by_shot.end() ? nullptr : given->second, properties.of(entry, PropertyOwner::node, node));
+        if (own) {
+            own->above = nearest;
+            nearest = static_cast<int>(switches_.size());
+            switches_.push_back(std::move(*own));
         }
         switch_of_[index(node)] = nearest;
         for (const int child : scene.nodes[index(node)].children) open.emplace_back(child, nearest);

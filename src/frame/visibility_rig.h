@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "frame/property_rig.h"
@@ -11,7 +13,8 @@ namespace kadr {
 class VisibilityRig {
 public:
     VisibilityRig() = default;
-    VisibilityRig(const Shot& shot, const Scene& scene, const PropertyRig& properties);
+    /// @param scenes  one per scene entry
+    VisibilityRig(const Shot& shot, const Scene& scene, const std::vector<BoundScene>& scenes, const PropertyRig& properties);
 
     /// Whether everything is always visible.
     bool idle() const { return switches_.empty(); }
@@ -40,7 +43,10 @@ private:
         bool on(double time_s) const;
     };
     int entry_switch(const SceneSpec& spec);
-    void add_tree(const Scene& scene, const PropertyRig& properties, int entry, int root, int above);
+    /// The switch of a node; none where it is always visible. @param by_shot  null: the shot says nothing of it
+    static std::optional<Switch> switch_for(bool rest, const SwitchTrack* by_shot, const std::vector<DrivenProperty>& by_clip);
+    using ByShot = std::map<int, const SwitchTrack*>;  ///< by node
+    void add_tree(const Scene& scene, const ByShot& by_shot, const PropertyRig& properties, int entry, int root, int above);
 
     std::vector<Switch> switches_;
     std::vector<int> switch_of_;  ///< [node] the nearest at or above it; -1: none

@@ -81,6 +81,8 @@ Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedF
     metadata["frame"] = std::to_string(time.number);
     metadata["time"] = format_number(time.time_s());
     metadata["motion_error_px"] = fmt::format("{:.4g}", frame.motion_error_px);
+    metadata["light_error"] = fmt::format("{:.4g}", frame.light_error);
+    if (shot.view.exposure_keys) metadata["exposure_stops"] = format_number(view_at(shot.view, time.time_s()).exposure_stops);
     metadata["dropped_samples"] = std::to_string(frame.statistics.dropped_samples);
     metadata["seconds"] = fmt::format("{:.3f}", frame.seconds);
     return metadata;

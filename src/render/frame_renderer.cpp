@@ -80,6 +80,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
     stop_if_interrupted();
     const Stopwatch watch;
     RenderedFrame frame = render(shot, make_snapshots(shot, time), layers, progress);
+    frame.time_s = time.time_s();
     frame.seconds = watch.seconds();
     return frame;
 }
@@ -108,6 +109,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
         device_->render(pass, film);
         add(frame.statistics, device_->statistics());
         frame.motion_error_px = std::max(frame.motion_error_px, parts[i].motion.max_error_px);
+        frame.light_error = std::max(frame.light_error, parts[i].light_error);
         stop_if_interrupted();
     }
     frame.image = film.develop();

@@ -14,6 +14,8 @@ struct RenderedFrame {
     Image image;
     DeviceStatistics statistics;   ///< summed over the parts of the shutter
     double motion_error_px = 0;
+    double light_error = 0;        ///< SceneSnapshot::light_error, the largest of the parts
+    double time_s = 0;             ///< of the shot
     double seconds = 0;
 };
 

@@ -71,7 +71,7 @@ FrameReport preview_still(const PreviewOptions& options, const RenderEvents& eve
     const FilmLayers layers = is_linear_file(file) ? film_layers(session.shot().output.aovs) : FilmLayers{};
     const RenderedFrame frame = session.render(session.bound(), time, layers);
     // No settings hash: a preview never passes for a frame of the shot.
-    write_frame(file, frame.image, session.view(), session.shot().output.png_bits,
+    write_frame(file, frame.image, session.view(frame.time_s), session.shot().output.png_bits,
                 frame_metadata(session.shot(), time, frame, session.device_name()));
     FrameReport report = session.report();
     report.frame = time.number;

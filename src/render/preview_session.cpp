@@ -44,8 +44,8 @@ PreviewSession::PreviewSession(const RenderOptions& options, const RenderEvents&
     load_device(*choice_.device, loaded_);
 }
 
-const ViewSpec& PreviewSession::view() {
-    if (!view_.automatic) return view_;
+ViewSpec PreviewSession::view(double time_s) {
+    if (!view_.automatic) return view_at(view_, time_s);
     view_.exposure_stops = meter_exposure(shot(), loaded_.scene(), renderer_, frame(bound().timing().frames.front()));
     view_.automatic = false;
     return view_;
@@ -62,7 +62,7 @@ RenderedFrame PreviewSession::render(const BoundShot& shot, const FrameTime& tim
     return frame;
 }
 
-Image PreviewSession::picture(const RenderedFrame& frame) { return apply_view(frame.image, view(), false); }
+Image PreviewSession::picture(const RenderedFrame& frame) { return apply_view(frame.image, view(frame.time_s), false); }
 
 Image PreviewSession::picture(const FrameTime& time, int frames_left) {
     return picture(render(bound(), time, FilmLayers{}, frames_left));

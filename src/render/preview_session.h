@@ -23,8 +23,8 @@ public:
     const Shot& shot() const { return loaded_.shot(); }
     const BoundShot& bound() const { return loaded_.bound(); }
     FrameTime frame(int number) const { return bound().sequence().frame(number); }
-    /// The shot's view with its exposure metered where it is automatic.
-    const ViewSpec& view();
+    /// The shot's view at a time, with its exposure metered where it is automatic.
+    ViewSpec view(double time_s);
 
     /// @param frames_left  for the progress bar
     RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers, int frames_left = 0);

@@ -63,7 +63,7 @@ private:
     FrameCache::Found find_or_render(const FrameTime& time, int frames_left);
     void render(DeliveryItem& item, const FrameTime& time, int frames_left);
     void load_device();
-    ViewSpec view_with_exposure();
+    ViewSpec view_with_exposure(const FrameTime& time);
     void report_written();
     void finish();
 
@@ -134,8 +134,8 @@ void RenderJob::load_device() {
     device_loaded_ = true;
 }
 
-ViewSpec RenderJob::view_with_exposure() {
-    ViewSpec view = loaded_->shot().view;
+ViewSpec RenderJob::view_with_exposure(const FrameTime& time) {
+    ViewSpec view = view_at(loaded_->shot().view, time.time_s());
     if (!view.automatic) return view;
     if (!exposure_) {
         load_device();
@@ -167,7 +167,7 @@ FrameCache::Found RenderJob::find_or_render(const FrameTime& time, int frames_le
 
 void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_left) {
     load_device();
-    item.view = view_with_exposure();
+    item.view = view_with_exposure(time);
     const Stopwatch watch;
     const auto [number, frame] = find_or_render(time, frames_left);
     if (number != time.number) item.report.same_as = number;
@@ -193,7 +193,7 @@ void RenderJob::deliver(int frame, int frames_left) {
     if (!item.report.reused)
         render(item, time, frames_left);
     else if ((video_ || view_wanted_) && is_linear_file(video_source(item.report.files)))
-        item.view = view_with_exposure();
+        item.view = view_with_exposure(time);
     summary_.view = item.view;
     ++summary_.frames;
     summary_.reused += item.report.reused;

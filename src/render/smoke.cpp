@@ -91,10 +91,10 @@ public:
         result.failures = obvious_faults(linear);
         const fs::path golden = golden_file(frame);
         if (update && result.failures.empty()) {
-            write_display(golden, display(linear));
+            write_display(golden, display(linear, frame));
             result.updated = true;
         } else if (fs::exists(golden)) {
-            compare(result, golden, display(linear));
+            compare(result, golden, display(linear, frame));
         }
         result.seconds = watch.seconds();
         return result;
@@ -102,7 +102,9 @@ public:
 
 private:
     FrameTime time_of(int frame) const { return loaded_.bound().sequence().frame(frame); }
-    Image display(const Image& linear) const { return as_stored(colors_of(apply_view(linear, view_, false))); }
+    Image display(const Image& linear, int frame) const {
+        return as_stored(colors_of(apply_view(linear, view_at(view_, time_of(frame).time_s()), false)));
+    }
 
     fs::path golden_file(int frame) const {
         return fs::absolute(loaded_.shot().file).parent_path() / "golden" / fmt::format("{}.{:04}.png", name(), frame);
@@ -124,7 +126,7 @@ private:
                                                   rendered.height));
             return;
         }
-        const Image other = display(renderer_.render(other_bound_, time_of(result.frame), FilmLayers{}).image);
+        const Image other = display(renderer_.render(other_bound_, time_of(result.frame), FilmLayers{}).image, result.frame);
         result.compared = true;
         result.flip = mean_flip(reference, rendered);
         result.tolerance = kSeedTolerance * mean_flip(rendered, other) + kQuantisation;

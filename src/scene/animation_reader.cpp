@@ -1,6 +1,7 @@
 #include "scene/animation_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "scene/accessor.h"
 #include "scene/deformation_reader.h"
+#include "scene/pointer_target.h"
 
 namespace kadr {
 
@@ -42,6 +44,20 @@ public:
         return samples;
     }
 
+    /// Booleans: 0 and 1, in steps.  Source: KHR_animation_pointer, "Output Accessor Component Types".
+    Samples read_switches() const {
+        if (sampler_.interpolation != "STEP")
+            document_.fail(pointer_ + "/interpolation", fmt::format("is {}", sampler_.interpolation), "expected STEP: what is true or false only jumps");
+        const tinygltf::Accessor& output = accessor(sampler_.output);
+        if (output.type != TINYGLTF_TYPE_SCALAR || output.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || output.normalized)
+            document_.fail(pointer_ + "/output", "is " + describe_accessor(output), "expected SCALAR of unsigned byte: 0 or 1");
+        Samples samples{read_times(), read_floats(document_, sampler_.output), Interpolation::step};
+        if (samples.values.size() != samples.times.size())
+            document_.fail(pointer_ + "/output", fmt::format("has {} elements for {} times", samples.values.size(), samples.times.size()), fmt::format("expected {}", samples.times.size()));
+        for (float& value : samples.values) value = value != 0 ? 1.0f : 0.0f;
+        return samples;
+    }
+
 private:
     const tinygltf::Accessor& accessor(int index) const { return document_.model().accessors[static_cast<std::size_t>(index)]; }
 
@@ -60,7 +76,7 @@ private:
 
     std::vector<float> read_values(int components, std::size_t per_key, const Samples& samples) const {
         const tinygltf::Accessor& output = accessor(sampler_.output);
-        const int expected_type = components == 4 ? TINYGLTF_TYPE_VEC4 : components == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_SCALAR;
+        const int expected_type = components == 1 ? TINYGLTF_TYPE_SCALAR : components == 2 ? TINYGLTF_TYPE_VEC2 : components == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4;
         const bool number = output.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
                             (output.normalized && output.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
         if (output.type != expected_type || !number)
@@ -81,18 +97,21 @@ private:
     std::string pointer_;
 };
 
+double value_at(const float* v, double) { return v[0]; }
+glm::dvec2 value_at(const float* v, glm::dvec2) { return {v[0], v[1]}; }
 glm::dvec3 value_at(const float* v, glm::dvec3) { return {v[0], v[1], v[2]}; }
 glm::dquat value_at(const float* v, glm::dquat) { return {v[3], v[0], v[1], v[2]}; }
 
+/// @param components  of an element of the sampler; @param first  of them that the track takes
 template <class T>
-Track<T> make_track(const Samples& samples, std::size_t components) {
+Track<T> make_track(const Samples& samples, std::size_t components, std::size_t first = 0) {
     Track<T> track;
     track.interpolation = samples.interpolation;
     const bool cubic = samples.interpolation == Interpolation::cubic;
     for (std::size_t i = 0; i < samples.times.size(); ++i) {
         Key<T> key;
         key.time_s = samples.times[i];
-        const float* values = &samples.values[i * components * (cubic ? 3 : 1)];
+        const float* values = &samples.values[i * components * (cubic ? 3 : 1)] + first;
         key.value = value_at(cubic ? values + components : values, T{});
         if (cubic) {
             key.in_tangent = value_at(values, T{});
@@ -126,7 +145,9 @@ std::vector<Track<double>> weight_tracks(const Samples& samples, std::size_t cou
 
 class AnimationReader {
 public:
-    AnimationReader(GltfDocument& document, std::size_t index) : document_(document), source_(document.model().animations[index]), index_(index) {
+    /// @param unknown  takes pointers to what Kadr does not animate
+    AnimationReader(GltfDocument& document, std::size_t index, std::vector<std::string>& unknown)
+        : document_(document), source_(document.model().animations[index]), index_(index), unknown_(unknown) {
         clip_.name = source_.name;
         clip_.begin_s = std::numeric_limits<double>::infinity();
         clip_.end_s = -clip_.begin_s;
@@ -148,14 +169,6 @@ private:
         document_.warnings.push_back(document_.warning(pointer(channel), found + " and is ignored"));
     }
 
-    /// One warning for a file, however many channels point into extensions.
-    void warn_of_pointer(std::size_t i) {
-        constexpr std::string_view kExtension = "KHR_animation_pointer";
-        for (const Diagnostic& earlier : document_.warnings)
-            if (earlier.found.find(kExtension) != std::string::npos) return;
-        warn(i, "animates a property through KHR_animation_pointer, which is not supported,");
-    }
-
     void channel(std::size_t i, const nlohmann::json& json) {
         const nlohmann::json& target = json["target"];
         tinygltf::AnimationChannel channel;
@@ -165,7 +178,7 @@ private:
         const std::string& path = channel.target_path;
         if (static_cast<std::size_t>(channel.sampler) >= source_.samplers.size())
             document_.fail(pointer(i) + "/sampler", fmt::format("is {}", channel.sampler), fmt::format("expected an index into the animation's {} samplers", source_.samplers.size()));
-        if (path == "pointer") return warn_of_pointer(i);
+        if (path == "pointer" && !follow_pointer(i, target, channel)) return;
         if (path != "weights" && path != "translation" && path != "rotation" && path != "scale")
             document_.fail(pointer(i) + "/target/path", fmt::format("is \"{}\"", path.substr(0, 60)), "expected one of: translation rotation scale weights");
         if (channel.target_node < 0) return warn(i, "names no node");
@@ -188,6 +201,38 @@ private:
     void extend(const Samples& samples) {
         clip_.begin_s = std::min<double>(clip_.begin_s, samples.times.front());
         clip_.end_s = std::max<double>(clip_.end_s, samples.times.back());
+    }
+
+    /// @return whether the pointer names a node's own transform or weights, which `channel` then names itself
+    bool follow_pointer(std::size_t i, const nlohmann::json& target, tinygltf::AnimationChannel& channel) {
+        const std::string where = pointer(i) + "/target/extensions/KHR_animation_pointer/pointer";
+        static const nlohmann::json::json_pointer kMember("/extensions/KHR_animation_pointer/pointer");
+        if (!target.contains(kMember)) document_.fail(where, "is missing", "expected a JSON pointer: the channel's path is \"pointer\"");
+        if (channel.target_node >= 0) document_.fail(pointer(i) + "/target/node", "is given beside a pointer", "expected one of the two");
+        const std::string text = target[kMember].get<std::string>();
+        const std::optional<PointerTarget> found = parse_pointer(document_, text, where);
+        if (!found) unknown_.push_back(text);
+        else if (found->node < 0) add_property(i, channel.sampler, *found, text);
+        if (!found || found->node < 0) return false;
+        channel.target_node = found->node;
+        channel.target_path = found->node_path;
+        return true;
+    }
+
+    void add_property(std::size_t i, int sampler, const PointerTarget& target, const std::string& text) {
+        for (const PropertyChannel& earlier : clip_.properties)
+            if (earlier.property == target.property && earlier.index == target.index && earlier.use == target.use)
+                document_.fail(pointer(i) + "/target", fmt::format("animates {} again", text), "expected one channel for each property");
+        const SamplerReader reader(document_, index_, static_cast<std::size_t>(sampler));
+        const Samples samples = target.is_switch ? reader.read_switches() : reader.read(target.components);
+        extend(samples);
+        const auto components = static_cast<std::size_t>(target.components);
+        PropertyChannel channel{target.property, target.index, target.use, {}};
+        if (components == 1) channel.track = make_track<double>(samples, 1);
+        else if (components == 2) channel.track = make_track<glm::dvec2>(samples, 2);
+        else channel.track = make_track<glm::dvec3>(samples, components);
+        clip_.properties.push_back(std::move(channel));
+        if (target.property == Property::base_color) clip_.properties.push_back({Property::alpha, target.index, target.use, make_track<double>(samples, 4, 3)});
     }
 
     void add(std::size_t i, const tinygltf::AnimationChannel& channel) {
@@ -226,13 +271,28 @@ private:
     std::size_t index_;
     Clip clip_;
     std::map<int, std::size_t> place_of_;
+    std::vector<std::string>& unknown_;
 };
+
+/// One warning for a file, however many of its pointers name what Kadr does not animate.
+void warn_of_pointers(GltfDocument& document, std::vector<std::string> pointers) {
+    constexpr std::size_t kMostListed = 6;
+    std::sort(pointers.begin(), pointers.end());
+    pointers.erase(std::unique(pointers.begin(), pointers.end()), pointers.end());
+    if (pointers.empty()) return;
+    const std::size_t more = pointers.size() - std::min(pointers.size(), kMostListed);
+    pointers.resize(pointers.size() - more);
+    document.warnings.push_back(document.warning(
+        "/animations", fmt::format("point to {}{}, which Kadr does not animate", fmt::join(pointers, ", "), more ? fmt::format(" and {} more", more) : "")));
+}
 
 }  // namespace
 
 std::vector<Clip> read_animations(GltfDocument& document) {
     std::vector<Clip> clips;
-    for (std::size_t i = 0; i < document.model().animations.size(); ++i) clips.push_back(AnimationReader(document, i).read());
+    std::vector<std::string> unknown;
+    for (std::size_t i = 0; i < document.model().animations.size(); ++i) clips.push_back(AnimationReader(document, i, unknown).read());
+    warn_of_pointers(document, std::move(unknown));
     return clips;
 }
 

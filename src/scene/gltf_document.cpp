@@ -24,7 +24,7 @@ constexpr std::string_view kDamaged = "the file is damaged; export it anew";
 
 constexpr std::string_view kSupported[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
                                            "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_variants", "KHR_node_visibility",
-                                           "EXT_mesh_gpu_instancing"};
+                                           "EXT_mesh_gpu_instancing", "KHR_animation_pointer"};
 
 /// Extensions that replace data: without them a file is useless unless it carries a fallback.
 struct Replacement {

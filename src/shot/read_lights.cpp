@@ -100,11 +100,31 @@ void read_cone(const Section& section, LightSpec& light) {
         "expected inner to be at most outer; both are half-angles");
 }
 
+/// What is infinite has no value between it and another.
+bool has_infinite_key(const Field& range) {
+    const YamlNode* keys = range.node->find("keys");
+    if (!keys || !keys->is_map()) return false;
+    for (const YamlEntry& entry : keys->entries) {
+        const YamlNode* inner = entry.value.is_map() ? entry.value.find("value") : nullptr;
+        const YamlNode& value = inner ? *inner : entry.value;
+        if (!value.is_scalar() || value.text != "infinite") continue;
+        range.with(value, range.name).error(fmt::format("{} is infinite at a key", range.name),
+                                            "expected a distance: nothing lies between it and infinity; key a large one, such as 1000 m");
+        return true;
+    }
+    return false;
+}
+
+void read_range(const Field& range, LightSpec& light) {
+    if (!range || is_word(range, "infinite")) return;
+    if (range.node->is_map() && has_infinite_key(range)) return;
+    assign(light.range_m, read_number_track(range));
+}
+
 void read_extent(const Section& section, LightSpec& light) {
-    const Field range = section["range"];
-    if (range && !is_word(range, "infinite")) assign(light.range_m, read_number(range));
+    read_range(section["range"], light);
     assign(light.radius_m, read_number_track(section["radius"]));
-    assign(light.angular_diameter_rad, read_number(section["angular_diameter"]));
+    assign(light.angular_diameter_rad, read_number_track(section["angular_diameter"]));
     assign(light.size_m, read_vector2_track(section["size"]));
 }
 
@@ -127,6 +147,7 @@ LightSpec read_light(const Section& shot, const YamlNode& node, std::size_t inde
     read_place(section, light);
     read_cone(section, light);
     read_extent(section, light);
+    assign(light.visible, read_switch_track(section["visible"]));
     return light;
 }
 

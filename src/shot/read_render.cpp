@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "shot/section_readers.h"
+#include "shot/track_reader.h"
 
 namespace kadr {
 
@@ -81,6 +82,10 @@ std::optional<double> read_camera_exposure(const Section& exposure) {
 
 void read_exposure(const Section& section, ViewSpec& view) {
     const Field field = section["exposure"];
+    if (field && field.node->is_map() && field.node->find("keys")) {
+        view.exposure_keys = read_number_track(field);
+        return;
+    }
     const Section map = section.section("exposure");
     if (map.present())
         assign(view.exposure_stops, read_camera_exposure(map));

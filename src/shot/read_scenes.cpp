@@ -33,6 +33,7 @@ void read_node_override(const Field& nodes, const YamlEntry& entry, SceneSpec& s
     node.where = location_of(entry.key.place);
     const GivenParts given = read_transform(section, node.transform);
     node.translates = given.translate, node.rotates = given.rotate, node.scales = given.scale;
+    node.visible = read_switch_track(section["visible"]);
     spec.nodes.push_back(std::move(node));
 }
 

@@ -25,10 +25,6 @@ struct NodeReference {
 /// Where a camera or a light looks: a (moving) point, or the origin of a node.
 using Target = std::variant<PositionTrack, NodeReference>;
 
-/// Something that is on (1) or off (0) and only jumps between the two: keys of Interpolation::step.
-using SwitchTrack = Track<double>;
-inline bool is_on(const SwitchTrack& track, double time_s) { return evaluate(track, time_s) >= 0.5; }
-
 /// What a shot changes of a material of a scene's file. What is absent stays as the file, or a clip, has it.
 struct MaterialSpec {
     std::string name;  ///< in the file; of several materials with one name all are meant
@@ -61,12 +57,17 @@ struct ClipLayer {
     bool operator==(const ClipLayer&) const = default;
 };
 
+/// Something that is on (1) or off (0) and only jumps between the two: keys of Interpolation::step.
+using SwitchTrack = Track<double>;
+inline bool is_on(const SwitchTrack& track, double time_s) { return evaluate(track, time_s) >= 0.5; }
+
 /// What the shot says of one node of a scene, whatever the clips say of it.
 struct NodeOverride {
     std::string name;  ///< "Node" or "Parent/Node", as resolve_node (frame/) reads it
     SourceLocation where;
     TransformTrack transform;  ///< parent_from_node; each part counts only where it is given
     bool translates = false, rotates = false, scales = false;
+    std::optional<SwitchTrack> visible;  ///< of the node and all below it; replaces what the file and its clips say
     bool operator==(const NodeOverride&) const = default;
 };
 
@@ -130,11 +131,12 @@ struct LightSpec {
     std::optional<Target> look_at;                                ///< wins over direction
     Track<glm::dvec3> direction{glm::dvec3(0, 0, -1)};            ///< the way the light travels
     Track<double> inner_rad{0.0}, outer_rad{0.7853981633974483};  ///< half-angles
-    double range_m = 0;                                           ///< 0: infinite
+    Track<double> range_m{0.0};                                   ///< 0: infinite, never keyed
     SpotFalloff falloff = SpotFalloff::gltf;
     Track<double> radius_m{0.0};              ///< point, spot: a sphere
-    double angular_diameter_rad = 0;          ///< directional
+    Track<double> angular_diameter_rad{0.0};  ///< directional
     Track<glm::dvec2> size_m{glm::dvec2(1)};  ///< area: rectangle
+    SwitchTrack visible{1.0};                 ///< off: as if it were not there
     bool operator==(const LightSpec&) const = default;
 };
 
@@ -175,8 +177,15 @@ struct ViewSpec {
     ViewTransform transform = ViewTransform::srgb;
     double exposure_stops = 0;  ///< every form of exposure, as a factor 2^stops
     bool automatic = false;     ///< meters the log-average of the shot's first frame
+    std::optional<Track<double>> exposure_keys;  ///< stops over time; replaces exposure_stops (see view_at)
     bool operator==(const ViewSpec&) const = default;
 };
+/// The view of the frame at a time: one exposure, whatever is open of its shutter.
+inline ViewSpec view_at(ViewSpec view, double time_s) {
+    if (view.exposure_keys) view.exposure_stops = evaluate(*view.exposure_keys, time_s);
+    view.exposure_keys.reset();
+    return view;
+}
 
 enum class Aov { albedo, normal, depth, motion, samples, error };
 enum class VideoCodec { h264, h265, av1, vp9, prores, ffv1, gif };

@@ -73,7 +73,7 @@ private:
         (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.emissive_strength, m.alpha, m.alpha_cutoff,
                 m.normal_scale);
     }
-    void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales); }
+    void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales, n.visible); }
     void add(const NamedAt& named) { add(named.name); }
     void add(const CameraSpec& c) {
         (*this)(c.gltf, c.position, c.around, c.look_at, c.up, c.up_given, c.dolly_m, c.shake, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,
@@ -81,7 +81,7 @@ private:
     }
     void add(const LightSpec& l) {
         (*this)(l.kind, l.strength, l.color, l.position, l.look_at, l.direction, l.inner_rad, l.outer_rad, l.range_m,
-                l.falloff, l.radius_m, l.angular_diameter_rad, l.size_m);
+                l.falloff, l.radius_m, l.angular_diameter_rad, l.size_m, l.visible);
     }
     void add(const EnvironmentSpec& e) {
         (*this)(e.image.has_value(), e.color, e.strength, e.rotate_rad, e.visible, e.given);
@@ -112,6 +112,7 @@ void hash_shot(const Shot& shot, Hasher& hasher) {
 void hash_view(const Shot& shot, Hasher& hasher) {
     Feed feed(hasher);
     feed(shot.view.transform, shot.view.exposure_stops, shot.view.automatic, shot.output.png_bits);
+    feed(shot.view.exposure_keys);
 }
 
 }  // namespace kadr

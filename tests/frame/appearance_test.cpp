@@ -203,6 +203,26 @@ TEST(Visibility, OfANodeHoldsForAllBelowIt) {
     EXPECT_TRUE(snapshot.lights.empty());
 }
 
+TEST(Visibility, OfTheShotsNodesReplacesWhatTheFileSays) {
+    PaintStage stage;
+    const int child = stage.add_node("child", 0);
+    stage.node(child).visible = false;
+    NodeOverride painted, shown;
+    painted.name = "painted";
+    painted.visible = track<double>({{0, 1}, {0.75, 0}}, Interpolation::step);
+    shown.name = "child";
+    shown.visible = SwitchTrack(1.0);
+    stage.shot.scenes[0].nodes = {painted, shown};
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_DOUBLE_EQ(parts[0].weight, 0.75);
+    EXPECT_EQ(parts[0].instances[0].mask, 0xffffffffu);
+    EXPECT_EQ(parts[0].instances[2].mask, 0xffffffffu);
+    EXPECT_EQ(parts[1].instances[0].mask, 0u);
+    EXPECT_EQ(parts[1].instances[2].mask, 0u);  // below it
+    EXPECT_EQ(parts[1].instances[1].mask, 0xffffffffu);
+}
+
 TEST(Visibility, OfClipsFollowsTheClipsTime) {
     PaintStage stage;
     stage.animate(0);

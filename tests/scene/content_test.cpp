@@ -275,10 +275,14 @@ TEST(Animations, ReadRotationsOfNormalisedIntegers) {
 
 TEST(Animations, ThatPointIntoExtensionsGiveOneWarning) {
     Animated file("LINEAR", "pointer", 0);
-    file.json["animations"][0]["channels"][0]["target"].erase("node");
+    nlohmann::json& channels = file.json["animations"][0]["channels"];
+    channels[0]["target"].erase("node");
+    channels.push_back(channels[0]);
+    channels[0]["target"]["extensions"]["KHR_animation_pointer"]["pointer"] = "/materials/0/extensions/KHR_materials_sheen/sheenRoughnessFactor";
+    channels[1]["target"]["extensions"]["KHR_animation_pointer"]["pointer"] = "/nodes/0/name";
     const Scene scene = file.load();
     ASSERT_THAT(scene.warnings, SizeIs(1));
-    EXPECT_EQ(scene.warnings[0].found, "/animations/0/channels/0 animates a property through KHR_animation_pointer, which is not supported, and is ignored");
+    EXPECT_EQ(scene.warnings[0].found, "/animations point to /materials/0/extensions/KHR_materials_sheen/sheenRoughnessFactor, /nodes/0/name, which Kadr does not animate");
 }
 
 TEST(Animations, ThatMakeNoSenseAreRefused) {

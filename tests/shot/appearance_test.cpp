@@ -36,6 +36,12 @@ TEST_F(Appearance, SwitchesJump) {
     EXPECT_FALSE(is_on(only_scene(parse_scene("{ gltf: a.glb, visible: false }")).visible, 0));
 }
 
+TEST_F(Appearance, NodesHaveSwitches) {
+    const SceneSpec scene = only_scene(parse_scene("{ gltf: a.glb, nodes: { Roof: { visible: { keys: { 0 s: true, 1 s: false } } }, Door: { scale: 2 } } }"));
+    EXPECT_FALSE(is_on(scene.nodes.at(0).visible.value(), 1));
+    EXPECT_EQ(scene.nodes.at(1).visible, std::nullopt);
+}
+
 TEST_F(Appearance, NamesAVariant) {
     EXPECT_EQ(only_scene(parse_scene("{ gltf: a.glb, variant: Midnight }")).variant, "Midnight");
     EXPECT_EQ(only_scene(parse_scene("{ gltf: a.glb, variant: null }")).variant, std::nullopt);
@@ -69,6 +75,28 @@ TEST_F(Appearance, Messages) {
   expected [x, y, z], each 0 to 1)");
 }
 
+TEST_F(Appearance, LightsTakeTracks) {
+    const LightSpec sun = parse("lights: [ { type: directional, angular_diameter: { keys: { 0 s: 0 deg, 1 s: 2 deg } }, visible: { keys: { 0 s: true, 1 s: false } } } ]").lights.at(0);
+    EXPECT_DOUBLE_EQ(evaluate(sun.angular_diameter_rad, 0.5), glm::radians(1.0));
+    EXPECT_FALSE(is_on(sun.visible, 1));
+    const LightSpec bulb = parse("lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: 50 cm } } } ]").lights.at(0);
+    EXPECT_DOUBLE_EQ(evaluate(bulb.range_m, 1), 0.5);
+    EXPECT_EQ(errors_of(std::string(kBase) + "lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: infinite } } } ]\n"),
+              R"(shot.yaml:4:57: error: lights.0.range is infinite at a key
+    lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: infinite } } } ]
+                                                            ^~~~~~~~
+  expected a distance: nothing lies between it and infinity; key a large one, such as 1000 m)");
+}
+
+TEST_F(Appearance, ExposureTakesATrackOfStops) {
+    const ViewSpec view = parse("view: { exposure: { keys: { 0 s: -2, 1 s: 2 } } }").view;
+    EXPECT_EQ(view_at(view, 0.75).exposure_stops, 1);
+    EXPECT_EQ(view_at(view, 0.75).exposure_keys, std::nullopt);
+    EXPECT_FALSE(view.automatic);
+    EXPECT_EQ(view_at(parse("view: { exposure: 3 }").view, 0.75).exposure_stops, 3);
+    EXPECT_EQ(errors_of(std::string(kBase) + "view: { exposure: { keys: { 0 s: auto } } }\n"), "?");
+}
+
 TEST_F(Appearance, BelongsToTheHash) {
     const auto hash_of = [](const std::string& scene) {
         Hasher hasher;
@@ -79,6 +107,12 @@ TEST_F(Appearance, BelongsToTheHash) {
     EXPECT_NE(hash_of(", visible: false"), plain);
     EXPECT_NE(hash_of(", variant: Blue"), plain);
     EXPECT_NE(hash_of(", materials: { Paint: { roughness: 0.5 } }"), plain);
+    const auto view_hash_of = [](const std::string& exposure) {
+        Hasher hasher;
+        hash_view(parse("view: { exposure: " + exposure + " }"), hasher);
+        return hasher.finish().hex();
+    };
+    EXPECT_NE(view_hash_of("{ keys: { 0 s: 1 } }"), view_hash_of("{ keys: { 0 s: 2 } }"));
     EXPECT_NE(hash_of(", materials: { Paint: { roughness: 0.5 } }"), hash_of(", materials: { Paint: { metallic: 0.5 } }"));
 }
 

@@ -214,10 +214,10 @@ TEST_F(Values, LightsHaveTheUnitsOfTheirKind) {
         "  - { type: area, luminance: 2000 nt, size: [1, 0.5] }\n");
     ASSERT_EQ(shot.lights.size(), 4u);
     EXPECT_EQ(shot.lights[0].strength, Track<double>(50000.0));
-    EXPECT_EQ(shot.lights[0].angular_diameter_rad, 0.53 * kPi / 180);
+    EXPECT_EQ(evaluate(shot.lights[0].angular_diameter_rad, 0), 0.53 * kPi / 180);
     EXPECT_EQ(shot.lights[1].strength.keys[1].value, 800);
     EXPECT_EQ(shot.lights[1].outer_rad, Track<double>(35 * kPi / 180));
-    EXPECT_EQ(shot.lights[1].range_m, 20);
+    EXPECT_EQ(evaluate(shot.lights[1].range_m, 0), 20);
     EXPECT_EQ(shot.lights[1].falloff, SpotFalloff::blender);
     EXPECT_TRUE(shot.lights[1].look_at);
     EXPECT_EQ(shot.lights[2].strength, Track<double>(800 / (4 * kPi)));

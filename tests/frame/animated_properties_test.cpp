@@ -1,0 +1,233 @@
+// Lights, cameras and the environment over time, and what clips drive through pointers.
+#include <gtest/gtest.h>
+
+#include "frame/bindings.h"
+#include "stage.h"
+
+namespace kadr {
+namespace {
+
+using test::Stage;
+using test::track;
+
+LightSpec sun_light() {
+    LightSpec sun;
+    sun.id = "sun";
+    sun.where = {"stage.yaml", 20, 3};
+    sun.kind = LightKind::directional;
+    return sun;
+}
+
+/// A clip that drives one property of the stage's file.
+template <class T>
+void drive(Stage& stage, Property property, int index, Track<T> values) {
+    if (stage.scene.clips.empty()) {
+        Clip clip;
+        clip.name = "Clip";
+        clip.end_s = 1000;
+        stage.scene.clips.push_back(clip);
+        stage.scene.files[0].clip_count = 1;
+    }
+    PropertyChannel channel;
+    channel.property = property;
+    channel.index = index;
+    channel.track = std::move(values);
+    stage.scene.clips[0].properties.push_back(channel);
+}
+
+int add_lamp(Stage& stage) {
+    SceneLight spot;
+    spot.kind = kernels::LightKind::spot;
+    spot.inner_rad = 0.2;
+    spot.outer_rad = 0.4;
+    stage.scene.lights.push_back(spot);
+    const int node = stage.add_node("lamp", -1, false);
+    stage.node(node).light = 0;
+    return node;
+}
+
+TEST(LightTracks, RangeAndAngularDiameterHaveKeys) {
+    Stage stage;
+    LightSpec bulb;
+    bulb.id = "bulb";
+    bulb.range_m = track<double>({{0, 2}, {1, 4}});
+    stage.shot.lights.push_back(bulb);
+    LightSpec sun = sun_light();
+    sun.angular_diameter_rad = track<double>({{0, 0.2}, {1, 0.4}});
+    stage.shot.lights.push_back(sun);
+    const SceneSnapshot snapshot = stage.snapshot();
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[0].first].range, 2);
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[0].first + snapshot.lights[0].count - 1].range, 4);
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first].cos_angular_radius, std::cos(0.1f));
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first + snapshot.lights[1].count - 1].cos_angular_radius, std::cos(0.2f));
+    EXPECT_LE(snapshot.light_error, 1e-3);
+    EXPECT_GT(snapshot.light_error, 0);  // the cosine bends
+}
+
+TEST(LightTracks, ThatAreLinearHaveNoError) {
+    Stage stage;
+    LightSpec bulb;
+    bulb.strength = track<double>({{0, 1}, {1, 2}});
+    stage.shot.lights.push_back(bulb);
+    EXPECT_LT(stage.snapshot().light_error, 1e-6);
+    stage.shot.lights[0].strength = track<double>({{0, 1}, {0.123, 4}, {0.3211, 1}, {0.789, 3}});
+    EXPECT_GT(stage.snapshot().light_error, 1e-3);  // more than 32 even segments would meet these keys
+    EXPECT_LT(stage.snapshot().light_error, 0.3);
+}
+
+TEST(LightTracks, SunsThatGrowFromAPointKeepASurface) {
+    Stage stage;
+    LightSpec sun = sun_light();
+    sun.angular_diameter_rad = track<double>({{0, 0}, {1, 0.4}});
+    stage.shot.lights.push_back(sun);
+    const SceneSnapshot snapshot = stage.snapshot();
+    EXPECT_LT(snapshot.light_keys[0].cos_angular_radius, 1);
+    EXPECT_GT(snapshot.light_keys[0].cos_angular_radius, 0.9999f);
+}
+
+TEST(LightTracks, VisibilitySplitsTheShutter) {
+    Stage stage;
+    LightSpec bulb;
+    bulb.visible = track<double>({{0, 1}, {0.25, 0}}, Interpolation::step);
+    stage.shot.lights.push_back(bulb);
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].lights.size(), 1u);
+    EXPECT_TRUE(parts[1].lights.empty());
+    EXPECT_EQ(parts[1].environment.radiance.x, 0);  // a hidden light does not bring the default sky back
+}
+
+TEST(Environments, ThatChangeLinearlyKeepOnePart) {
+    Stage stage;
+    stage.shot.environment.given = true;
+    stage.shot.environment.color = Track<glm::dvec3>(glm::dvec3(1, 0.5, 0));
+    stage.shot.environment.strength = track<double>({{0, 0}, {1, 8}});
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_FLOAT_EQ(parts[0].environment.radiance.y, 2);
+}
+
+TEST(Environments, ThatFlashKeepTheirMean) {
+    Stage stage;
+    stage.shot.environment.given = true;
+    stage.shot.environment.color = Track<glm::dvec3>(glm::dvec3(1));
+    stage.shot.environment.strength = track<double>({{0.2, 0}, {0.5, 10}, {0.6, 0}});  // the mean is 10 * 0.4 / 2
+    double mean = 0;
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    for (const SceneSnapshot& part : parts) mean += part.weight * part.environment.radiance.x;
+    EXPECT_GT(parts.size(), 2u);
+    EXPECT_LE(parts.size(), 16u);
+    EXPECT_NEAR(mean, 2, 0.02);
+}
+
+TEST(Environments, ThatTurnAreFollowedToHalfADegree) {
+    Stage stage;
+    stage.shot.environment.given = true;
+    stage.shot.environment.image = "sky.exr";
+    stage.shot.environment.rotate_rad = track<double>({{0, 0}, {1, 0.0349}});  // 2 degrees
+    EXPECT_EQ(stage.snapshots().size(), 4u);
+}
+
+TEST(Pointers, DriveLights) {
+    Stage stage;
+    add_lamp(stage);
+    drive(stage, Property::light_color, 0, track<glm::dvec3>({{0, {1, 0, 0}}, {1, {0, 1, 0}}}));
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 8}}));
+    drive(stage, Property::light_range, 0, track<double>({{0, 5}}));
+    drive(stage, Property::light_inner, 0, track<double>({{0, 0.3}}));
+    drive(stage, Property::light_outer, 0, track<double>({{0, 0.6}}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    const kernels::Light &first = snapshot.light_keys.front(), &last = snapshot.light_keys.back();
+    EXPECT_FLOAT_EQ(first.radiance.x, 8);
+    EXPECT_FLOAT_EQ(last.radiance.y, 8);
+    EXPECT_FLOAT_EQ(last.radiance.x, 0);
+    EXPECT_FLOAT_EQ(first.range, 5);
+    EXPECT_FLOAT_EQ(first.inner_rad, 0.3f);
+    EXPECT_FLOAT_EQ(first.outer_rad, 0.6f);
+}
+
+TEST(Pointers, KeepToTheirEntrysTime) {
+    Stage stage;
+    add_lamp(stage);
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 0}, {1000, 1000}}));
+    stage.shot.scenes[0].layers[0].speed = 2;
+    stage.shot.scenes[0].layers[0].start_s = 100;
+    const SceneSnapshot snapshot = stage.snapshot(10);
+    EXPECT_FLOAT_EQ(snapshot.light_keys.front().radiance.x, 120);
+    EXPECT_FLOAT_EQ(snapshot.light_keys.back().radiance.x, 122);
+    stage.shot.scenes[0].layers.clear();
+    EXPECT_FLOAT_EQ(stage.snapshot(10).light_keys.front().radiance.x, 1);
+}
+
+TEST(Pointers, ThatJumpSplitTheShutter) {
+    Stage stage;
+    add_lamp(stage);
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 1}, {0.5, 3}}, Interpolation::step));
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_FLOAT_EQ(parts[0].light_keys.at(0).radiance.x, 1);
+    EXPECT_FLOAT_EQ(parts[1].light_keys.at(0).radiance.x, 3);
+}
+
+TEST(Pointers, DriveCameras) {
+    Stage stage;
+    stage.scene.cameras.push_back({"Lens", false, 0.8, 0, 1, 1, 0.1, 0});
+    const int node = stage.add_node("camera", -1, false);
+    stage.node(node).camera = 0;
+    stage.shot.camera.gltf = NodeReference{"stage/camera", {}};
+    drive(stage, Property::camera_yfov, 0, track<double>({{0, 0.4}, {1, 0.8}}));
+    drive(stage, Property::camera_znear, 0, track<double>({{0, 1}, {1, 2}}));
+    drive(stage, Property::camera_zfar, 0, track<double>({{0, 50}}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    EXPECT_FLOAT_EQ(snapshot.camera_keys.front().tan_half_height, std::tan(0.2f));
+    EXPECT_FLOAT_EQ(snapshot.camera_keys.back().tan_half_height, std::tan(0.4f));
+    EXPECT_GT(snapshot.camera_keys.size(), 1u);
+    EXPECT_FLOAT_EQ(snapshot.camera.near_clip, 1.5f);  // of the middle
+    EXPECT_FLOAT_EQ(snapshot.camera.far_clip, 50);
+}
+
+TEST(Pointers, DriveMaterials) {
+    Stage stage;
+    stage.add_node("cube");
+    stage.scene.material_names = {"Paint"};
+    stage.scene.material_sources.resize(1);
+    stage.scene.material_sources[0].index = 4;  // of the file's materials the fifth
+    stage.scene.material_sources[0].emissive = {1, 1, 1};
+    stage.scene.files[0].material_count = 1;
+    stage.scene.materials[0].base_color_texture.texture = 0;
+    drive(stage, Property::metallic, 4, track<double>({{0, 0.5}}));
+    drive(stage, Property::emissive_strength, 4, track<double>({{0, 3}}));
+    drive(stage, Property::occlusion_strength, 4, track<double>({{0, 0.25}}));
+    drive(stage, Property::texture_offset, 4, track<glm::dvec2>({{0, {0.25, 0.5}}}));
+    drive(stage, Property::texture_rotation, 4, track<double>({{0, test::kPi / 2}}));
+    drive(stage, Property::texture_scale, 4, track<glm::dvec2>({{0, {2, 3}}}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    const kernels::Material& m = snapshot.materials.at(snapshot.instances.at(0).material);
+    EXPECT_EQ(m.metallic, 0.5f);
+    EXPECT_EQ(m.emission.x, 3);
+    EXPECT_EQ(m.occlusion_strength, 0.25f);
+    EXPECT_FLOAT_EQ(m.base_color_texture.m02, 0.25f);
+    EXPECT_FLOAT_EQ(m.base_color_texture.m12, 0.5f);
+    EXPECT_NEAR(m.base_color_texture.m00, 0, 1e-6);
+    EXPECT_FLOAT_EQ(m.base_color_texture.m01, 3);
+    EXPECT_FLOAT_EQ(m.base_color_texture.m10, -2);
+    // The shot's own track wins over the clip's.
+    stage.shot.scenes[0].materials.emplace_back().name = "Paint";
+    stage.shot.scenes[0].materials[0].metallic = Track<double>(0.75);
+    const SceneSnapshot own = stage.snapshot();
+    EXPECT_EQ(own.materials.at(own.instances.at(0).material).metallic, 0.75f);
+    EXPECT_EQ(own.materials.at(own.instances.at(0).material).emission.x, 3);
+}
+
+TEST(Pointers, OfTwoClipsTheLastWins) {
+    Stage stage;
+    add_lamp(stage);
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 5}}));
+    stage.scene.clips.push_back(stage.scene.clips[0]);
+    stage.scene.files[0].clip_count = 2;
+    stage.scene.clips[1].properties[0].track = track<double>({{0, 7}});
+    EXPECT_FLOAT_EQ(stage.snapshot().light_keys.front().radiance.x, 7);
+}
+
+}  // namespace
+}  // namespace kadr
