@@ -37,13 +37,20 @@ std::string frame_line(const FrameReport& report) {
     return fmt::format("{}: {} in {}", name, file, readable_time(report.seconds));
 }
 
+/// "0.06 px (instances 0.06, vertices 0, camera 0.002), 9 motion frames in 2 parts".
+std::string motion_text(const MotionReport& motion) {
+    return fmt::format("{:.3g} px (instances {:.3g}, vertices {:.3g}, camera {:.3g}){}, {} motion frame{} in {} part{}", motion.largest_px(),
+                       motion.instances_px, motion.vertices_px, motion.camera_px, motion.met() ? "" : ", above the tolerance", motion.frames,
+                       motion.frames == 1 ? "" : "s", motion.parts, motion.parts == 1 ? "" : "s");
+}
+
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
     return fmt::format("  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
-                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {:.3g} px",
+                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}",
                        device.rays, device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
                        device.instances, device.moving_instances, device.flattened_triangles, device.structures.built,
-                       device.structures.updated, device.structures.kept, report.motion_error_px);
+                       device.structures.updated, device.structures.kept, motion_text(report.motion));
 }
 
 /// "3 reused", "3 reused, 40 the same as another".
@@ -180,7 +187,10 @@ Json frame_json(const FrameReport& report) {
     return {{"event", "frame"}, {"frame", report.frame}, {"reused", report.reused},
             {"same_as", report.same_as ? Json(*report.same_as) : Json()}, {"seconds", report.seconds},
             {"samples", report.samples}, {"dropped", report.dropped}, {"clamped", report.clamped},
-            {"motion_error_px", report.motion_error_px}, {"files", files}};
+            {"motion_error_px", report.motion_error_px},
+            {"motion", {{"instances_px", report.motion.instances_px}, {"vertices_px", report.motion.vertices_px}, {"camera_px", report.motion.camera_px},
+                        {"frames", report.motion.frames}, {"parts", report.motion.parts}, {"met", report.motion.met()}}},
+            {"files", files}};
 }
 
 Json summary_json(const RenderSummary& summary) {

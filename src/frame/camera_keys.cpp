@@ -236,6 +236,19 @@ kernels::CameraKey to_key(const CameraState& camera, const glm::dvec3& origin) {
             static_cast<float>(camera.lens_radius), static_cast<float>(camera.focus_distance)};
 }
 
+/// Error of evenly spaced states at a quarter, the half and three quarters of every step, where the fit looks at it.
+double worst_error_px(const BoundShot& shot, const std::vector<CameraState>& states, double open_s, double close_s) {
+    double worst = 0;
+    const std::size_t checks = 4 * (states.size() - 1);
+    for (std::size_t i = 0; i < checks; ++i) {
+        if (i % 4 == 0) continue;
+        const double time_s = std::lerp(open_s, close_s, static_cast<double>(i) / static_cast<double>(checks));
+        const CameraState is = between(states[i / 4], states[i / 4 + 1], 0.25 * static_cast<double>(i % 4));
+        worst = std::max(worst, pixels_between(is, camera_at(shot, time_s), shot.shot().image.height));
+    }
+    return worst;
+}
+
 /// Applies `visit(track)` to every track of the camera that is in use.
 template <class Visit>
 void visit_tracks(const CameraSpec& spec, Visit visit) {
@@ -283,7 +296,7 @@ CameraState camera_at(const BoundShot& shot, double time_s) {
     return camera;
 }
 
-std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin) {
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin) {
     std::vector<CameraState> states{camera_at(shot, open_s)};
     if (close_s > open_s) {
         const std::vector<double> keys = camera_key_times(shot, open_s, close_s);
@@ -297,12 +310,13 @@ std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double o
                        pixels_between(between(a, b, u), wanted, height) <= tolerance;
             });
     }
-    std::vector<kernels::CameraKey> result;
+    CameraFit fit;
+    if (states.size() > 1) fit.error_px = worst_error_px(shot, states, open_s, close_s);
     for (CameraState& state : states) {
         if (&state != &states.front() && glm::dot((&state)[-1].rotation, state.rotation) < 0) state.rotation = -state.rotation;
-        result.push_back(to_key(state, origin));
+        fit.keys.push_back(to_key(state, origin));
     }
-    return result;
+    return fit;
 }
 
 kernels::Camera make_camera(const BoundShot& shot, double time_s) {

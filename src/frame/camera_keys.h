@@ -26,9 +26,14 @@ struct CameraState {
 /// @throws InputError  where the camera stands on what it looks at, or focuses behind itself
 CameraState camera_at(const BoundShot& shot, double time_s);
 
-/// Keys over a part of the shutter, evenly spaced, relative to the render origin: one when the camera is still, else as
-/// many as the motion tolerance and 10 degrees a step ask for.
-std::vector<kernels::CameraKey> make_camera_keys(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin);
+struct CameraFit {
+    std::vector<kernels::CameraKey> keys;  ///< evenly spaced, relative to the render origin
+    double error_px = 0;                   ///< how far the subject's image strays from where the true camera has it, at most
+};
+
+/// Keys over a part of the shutter: one when the camera is still, else as many as the motion tolerance and 10 degrees a
+/// step ask for, and no more than 129: then the error is above the tolerance.
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin);
 
 /// The parts of the camera that do not change within a part of the shutter; its clip planes are those of `time_s`.
 kernels::Camera make_camera(const BoundShot& shot, double time_s);

@@ -375,7 +375,10 @@ void pack(const BoundShot& shot, const std::vector<Batch>& batches, SceneSnapsho
             add_instance(shot, members[i], snapshot);
             motion.headers.push_back({count, fitted.count});
             motion.linear.push_back(fitted.linear ? 1 : 0);
-            motion.max_error_px = std::max(motion.max_error_px, static_cast<double>(fitted.error_px));
+            if (fitted.error_px > motion.max_error_px) {
+                motion.max_error_px = fitted.error_px;
+                motion.worst = static_cast<std::uint32_t>(motion.headers.size() - 1);
+            }
             count += fitted.count;
         }
     }

@@ -166,7 +166,7 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
         places.world_from_geometry.push_back(world_from_node * bindings.copied_from_geometry(shot.scene(), instance));
     }
     places.deformed = deformed_positions(shot, snapshot, time_s);
-    places.camera = make_camera_keys(shot, time_s, time_s, snapshot.render_origin).front();
+    places.camera = fit_camera(shot, time_s, time_s, snapshot.render_origin).keys.front();
     return places;
 }
 
@@ -199,7 +199,9 @@ private:
         snapshot.open_s = part.open_s;
         snapshot.close_s = part.close_s;
         set_shutter(shot_, frame_, snapshot);
-        snapshot.camera_keys = make_camera_keys(shot_, inside.open_s, inside.close_s, origin_);
+        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, origin_);
+        snapshot.camera_keys = std::move(camera.keys);
+        snapshot.camera_error_px = camera.error_px;
         snapshot.camera = make_camera(shot_, middle_s);
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
         add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);

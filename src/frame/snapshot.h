@@ -25,6 +25,7 @@ struct MotionFrames {
     /// Whether linearly interpolated matrices (two keys) already meet the motion tolerance; [instance].
     std::vector<std::uint8_t> linear;
     double max_error_px = 0;                        ///< largest screen-space deviation from the true path
+    std::uint32_t worst = 0;                        ///< index of the instance that has it
 };
 
 /// A mesh that bends, over the part of the shutter: its vertices at evenly spaced times of [0, 1], in the normalised
@@ -85,6 +86,7 @@ struct SceneSnapshot {
     std::vector<kernels::Material> materials;
     std::vector<std::shared_ptr<const DeformedMesh>> deformed;
     std::vector<kernels::CameraKey> camera_keys;
+    double camera_error_px = 0;                ///< largest deviation of the interpolated camera, for its subject
     kernels::Camera camera{};                  ///< keys pointer is null here; the device points it at its own copy
     std::vector<LightKeys> lights;
     std::vector<kernels::Light> light_keys;

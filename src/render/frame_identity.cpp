@@ -80,7 +80,13 @@ Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedF
     Metadata metadata = shot_metadata(shot, device_name);
     metadata["frame"] = std::to_string(time.number);
     metadata["time"] = format_number(time.time_s());
-    metadata["motion_error_px"] = fmt::format("{:.4g}", frame.motion_error_px);
+    metadata["motion_error_px"] = fmt::format("{:.4g}", frame.motion.largest_px());
+    metadata["motion_error_instances_px"] = fmt::format("{:.4g}", frame.motion.instances_px);
+    metadata["motion_error_vertices_px"] = fmt::format("{:.4g}", frame.motion.vertices_px);
+    metadata["motion_error_camera_px"] = fmt::format("{:.4g}", frame.motion.camera_px);
+    metadata["motion_frames"] = std::to_string(frame.motion.frames);
+    metadata["shutter_parts"] = std::to_string(frame.motion.parts);
+    metadata["motion_tolerance_met"] = frame.motion.met() ? "yes" : "no";
     metadata["light_error"] = fmt::format("{:.4g}", frame.light_error);
     if (shot.view.exposure_keys) metadata["exposure_stops"] = format_number(view_at(shot.view, time.time_s()).exposure_stops);
     metadata["dropped_samples"] = std::to_string(frame.statistics.dropped_samples);

@@ -90,6 +90,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
     stop_if_interrupted();
     const Stopwatch watch;
     RenderedFrame frame;
+    frame.motion = motion_report(shot, parts);
     const int total = shot.shot().render.samples;
     const std::vector<SampleRange> ranges = deal_samples(weights_of(parts), total);
     Film& film = cleared_film(shot.shot().image, layers, needs_weights(parts, ranges, total));
@@ -108,7 +109,6 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
             };
         device_->render(pass, film);
         add(frame.statistics, device_->statistics());
-        frame.motion_error_px = std::max(frame.motion_error_px, parts[i].motion.max_error_px);
         frame.light_error = std::max(frame.light_error, parts[i].light_error);
         stop_if_interrupted();
     }

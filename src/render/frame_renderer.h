@@ -6,6 +6,7 @@
 #include "device/device.h"
 #include "film/film.h"
 #include "frame/frame_state.h"
+#include "frame/motion_report.h"
 
 namespace kadr {
 
@@ -13,7 +14,7 @@ namespace kadr {
 struct RenderedFrame {
     Image image;
     DeviceStatistics statistics;   ///< summed over the parts of the shutter
-    double motion_error_px = 0;
+    MotionReport motion;
     double light_error = 0;        ///< SceneSnapshot::light_error, the largest of the parts
     double time_s = 0;             ///< of the shot
     double seconds = 0;

@@ -57,7 +57,7 @@ RenderedFrame PreviewSession::render(const BoundShot& shot, const FrameTime& tim
         shot, time, layers, [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); });
     report_.samples += frame.statistics.pixel_samples;
     report_.dropped += frame.statistics.dropped_samples;
-    report_.motion_error_px = std::max(report_.motion_error_px, frame.motion_error_px);
+    report_.motion_error_px = std::max(report_.motion_error_px, frame.motion.largest_px());
     add(report_.device, frame.statistics);
     return frame;
 }

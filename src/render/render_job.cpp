@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "frame/snapshot_key.h"
 #include "output/encoder.h"
 #include "output/frame_writer.h"
@@ -65,6 +67,7 @@ private:
     void load_device();
     ViewSpec view_with_exposure(const FrameTime& time);
     void report_written();
+    void warn_of_motion(const FrameReport& report);
     void finish();
 
     const RenderOptions& options_;
@@ -79,6 +82,7 @@ private:
     DeviceChoice device_;
     bool device_loaded_ = false;
     std::optional<FrameRenderer> renderer_;
+    std::set<std::string> astray_;  ///< what has been warned of
     FrameCache cache_{kMostCachedBytes};
     std::optional<double> exposure_;
     std::optional<Delivery> delivery_;
@@ -176,7 +180,8 @@ void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_lef
     item.report.seconds = watch.seconds();
     item.report.samples = frame->statistics.pixel_samples;
     item.report.dropped = frame->statistics.dropped_samples;
-    item.report.motion_error_px = frame->motion_error_px;
+    item.report.motion_error_px = frame->motion.largest_px();
+    item.report.motion = frame->motion;
     if (!item.report.same_as) item.report.device = frame->statistics;
     item.image = std::shared_ptr<const Image>(frame, &frame->image);
     summary_.same += item.report.same_as.has_value();
@@ -216,8 +221,20 @@ void RenderJob::report_written() {
                                         report.clamped);
             warn({clamped});
         }
+        warn_of_motion(report);
         events_.frame_done(report);
     }
+}
+
+/// Once for every node: the next frames would say the same.
+void RenderJob::warn_of_motion(const FrameReport& report) {
+    if (report.reused || report.motion.met() || !astray_.insert(report.motion.worst).second) return;
+    Diagnostic astray;
+    astray.warning = true;
+    astray.found = fmt::format("frame {}: {} strays {:.3g} px from its true path, more than render.motion_tolerance, {} px", report.frame,
+                               report.motion.worst, report.motion.largest_px(), format_number(report.motion.tolerance_px));
+    astray.expected = "129 motion frames are not enough for it; close the shutter earlier, or raise the tolerance";
+    warn({astray});
 }
 
 void RenderJob::finish() {

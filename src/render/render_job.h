@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "frame/motion_report.h"
 #include "shot/shot_parser.h"
 
 namespace kadr {
@@ -33,7 +34,8 @@ struct FrameReport {
     double seconds = 0;
     std::uint64_t samples = 0, dropped = 0;
     std::uint64_t clamped = 0;       ///< half-float values above 65504
-    double motion_error_px = 0;
+    double motion_error_px = 0;      ///< the largest of `motion`
+    MotionReport motion;
     std::vector<std::filesystem::path> files;
     DeviceStatistics device;
     std::string preview;             ///< "sheet", "onion" or "path": a picture that is no frame of the shot
