@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <random>
 
 #include <nlohmann/json.hpp>
@@ -227,6 +228,18 @@ double difference(const glm::dmat4& is, const Matrix& wanted) {
     return worst / size;
 }
 
+/// Nothing for a file that asks for what is not supported, which the loader refuses by name.
+std::optional<Scene> scene_of(const std::filesystem::path& path) {
+    LoadOptions options;
+    options.decode_textures = false;
+    try {
+        return load_scene({{"stage", path, {}}}, options);
+    } catch (const InputError& error) {
+        std::cout << path.filename().string() << " left out: " << error.diagnostics().front().found << "\n";
+        return std::nullopt;
+    }
+}
+
 class GltfReference : public testing::TestWithParam<const char*> {};
 
 TEST_P(GltfReference, AgreesAtRandomTimes) {
@@ -235,10 +248,10 @@ TEST_P(GltfReference, AgreesAtRandomTimes) {
     if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no " << folder;
     std::mt19937_64 random(20240607);
     for (const std::filesystem::path& path : test::gltf_files(folder)) {
+        const std::optional<Scene> loaded = scene_of(path);
+        if (!loaded) continue;
+        const Scene& scene = *loaded;
         const Reference reference(path);
-        LoadOptions options;
-        options.decode_textures = false;
-        const Scene scene = load_scene({{"stage", path, {}}}, options);
         ASSERT_EQ(scene.nodes.size(), reference.nodes());
         double worst = 0;
         int compared = 0;
@@ -256,15 +269,15 @@ TEST_P(GltfReference, AgreesAtRandomTimes) {
             }
         }
         std::cout << path.filename().string() << ": " << compared << " transforms, largest relative difference " << worst << "\n";
-        EXPECT_LT(worst, 1e-11) << path;  // a dozen products of doubles with a rounding of 1e-16 each, and keys seconds apart at 1e-15 of a second
+        EXPECT_LT(worst, 1e-13) << path;  // a few dozen products of doubles, each rounded to 1e-16; measured: 6e-16
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Outside, GltfReference,
                          testing::Values("InterpolationTest", "blender-io-06_parent-inverse-anim", "BoxAnimated", "cube-animation-playcanvas", "CesiumMilkTruck",
                                          "RiggedSimple", "Fox", "blender-io-01_cs_translate"),
-                         [](const auto& tested) {
-                             std::string name = tested.param;
+                         [](const auto& file) {
+                             std::string name = file.param;
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });

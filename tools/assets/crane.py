@@ -116,15 +116,15 @@ def crane():
     w = np.linspace(0, 2, 9)  # Work: swings to the other side, in and down
     u = w / 2
     ease = u * u * (3 - 2 * u)
-    length = 0.26 + 0.30 * ease
+    length = 0.26 + 0.19 * ease
     rate = 6 * u * (1 - u)
     clip(g, "Work", [
-        (slew, "rotation", [0, 0.7, 1.3, 2], smooth_yaw([0, 0.7, 1.3, 2], [-34, 6, 52, 88]), "CUBICSPLINE"),
+        (slew, "rotation", [0, 0.7, 1.3, 2], smooth_yaw([0, 0.7, 1.3, 2], [-20, -58, -104, -140]), "CUBICSPLINE"),
         (trolley, "translation", w, [(0.74 - 0.34 * e, 0.05, 0) for e in ease], "LINEAR"),
-        (hang, "rotation", w, [quaternion((-9 * r, 0, -4 * r)) for r in rate], "LINEAR"),
+        (hang, "rotation", w, [quaternion((9 * r, 0, -4 * r)) for r in rate], "LINEAR"),
         (cable, "scale", w, [(1, x, 1) for x in length], "LINEAR"),
         (hook, "translation", w, [(0, -x, 0) for x in length], "LINEAR"),
-        (crate, "rotation", w, [yaw(-50 * e) for e in ease], "LINEAR"),
+        (crate, "rotation", w, [yaw(50 * e) for e in ease], "LINEAR"),
         (beacon, "rotation", [0, 2], [yaw(0), yaw(90)], "LINEAR")])
     return g.bytes()
 
