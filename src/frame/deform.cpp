@@ -12,6 +12,7 @@
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
 #include "frame/deform_fit.h"
+#include "frame/motion_frames.h"
 #include "frame/key_grid.h"
 #include "frame/problem.h"
 
@@ -198,11 +199,6 @@ std::shared_ptr<const DeformedMesh> make_mesh(const GeometryData& geometry, cons
     return mesh;
 }
 
-glm::dmat4 relative(glm::dmat4 world, const glm::dvec3& origin) {
-    for (int i = 0; i < 3; ++i) world[3][i] -= origin[i];
-    return world;
-}
-
 }  // namespace
 
 void bind_deformers(const BoundShot& shot, Bindings& bindings) {
@@ -227,7 +223,7 @@ void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSna
         DeformationView view;
         view.enough_px = kMargin * kDeformationShare * shot.shot().render.motion_tolerance_px;
         for (const std::size_t i : instances) {
-            view.world_from_deformed.push_back(relative(snapshot.instances[i].world_from_geometry, snapshot.render_origin));
+            view.world_from_deformed.push_back(interpolate(snapshot.motion, snapshot.motion.headers[i], 0));  // relative to the origin
             snapshot.instances[i].deformed = static_cast<int>(snapshot.deformed.size());
         }
         const FittedPoses fitted = fit_poses(shot, deformer, part, view);

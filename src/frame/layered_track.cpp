@@ -19,9 +19,6 @@ constexpr double kHalfTurn = 3.14159265358979324;
 constexpr int kCurveSteps = 8;            // in which a curve between two keys is measured
 
 template <class T>
-constexpr bool kIsRotation = std::is_same_v<T, glm::dquat>;
-
-template <class T>
 const PlayingLayer& layer_of(const typename LayeredTrack<T>::Part& part, Layers layers) { return layers[static_cast<std::size_t>(part.layer)]; }
 
 bool curved(Interpolation interpolation) { return interpolation == Interpolation::smooth || interpolation == Interpolation::cubic; }

@@ -289,7 +289,7 @@ private:
             return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
                           "expected scales that keep their sign; use a step key to mirror an object");
         // Where vertices bend as well, both share the tolerance.
-        const double enough = kMargin * interval_.tolerance_px * (seeds_[i].deformer >= 0 ? 1 - kDeformationShare : 1);
+        const double enough = kMargin * interval_.tolerance_px * (instances_[i].seed->deformer >= 0 ? 1 - kDeformationShare : 1);
         const bool last = 2 * segments > kMostSegments;
         const double step = fit.widest_step();
         const double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
