@@ -20,11 +20,25 @@ glm::dvec3 radiance_at(const EnvironmentSpec& spec, double time_s) {
     return spec.image ? glm::dvec3(strength) : evaluate(spec.color, time_s) * strength;
 }
 
+/// Mean over an interval by Simpson's rule between keys: exact where colour and strength are linear, or one of them is a cubic.
+glm::dvec3 mean_radiance(const EnvironmentSpec& spec, double begin_s, double end_s) {
+    if (!(end_s > begin_s)) return radiance_at(spec, begin_s);
+    std::vector<double> times = merged(key_times(spec.color, begin_s, end_s), key_times(spec.strength, begin_s, end_s));
+    times.push_back(end_s);
+    glm::dvec3 sum(0);
+    for (double from = begin_s; const double to : times) {
+        sum += (to - from) / 6 * (radiance_at(spec, from) + 4.0 * radiance_at(spec, 0.5 * (from + to)) + radiance_at(spec, to));
+        from = to;
+    }
+    return sum / (end_s - begin_s);
+}
+
 }  // namespace
 
-EnvironmentSnapshot environment_at(const BoundShot& shot, double time_s) {
+EnvironmentSnapshot environment_over(const BoundShot& shot, double begin_s, double end_s) {
     const EnvironmentSpec& spec = shot.shot().environment;
-    const glm::vec3 radiance(spec.given ? radiance_at(spec, time_s) : has_lights(shot) ? glm::dvec3(0) : kSky);
+    const double time_s = 0.5 * (begin_s + end_s);
+    const glm::vec3 radiance(spec.given ? mean_radiance(spec, begin_s, end_s) : has_lights(shot) ? glm::dvec3(0) : kSky);
     EnvironmentSnapshot environment;
     environment.radiance = {radiance.x, radiance.y, radiance.z};
     environment.visible = spec.visible;

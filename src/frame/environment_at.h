@@ -6,8 +6,8 @@
 
 namespace kadr {
 
-/// The environment at a time: what stands for a part of the shutter.
-EnvironmentSnapshot environment_at(const BoundShot& shot, double time_s);
+/// The environment over a part of the shutter: the mean of its radiance, and its image as it lies in the middle.
+EnvironmentSnapshot environment_over(const BoundShot& shot, double begin_s, double end_s);
 
 /// Whether the middle of an interval cannot stand for all of it: radiance bends by more than a thousandth, or an image
 /// turns by more than half a degree (the sun's width).

@@ -205,7 +205,7 @@ private:
         snapshot.camera = make_camera(shot_, middle_s);
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
         add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
-        snapshot.environment = environment_at(shot_, middle_s);
+        snapshot.environment = environment_over(shot_, inside.open_s, inside.close_s);
         snapshot.settings = settings_of(shot_.shot(), frame_.number);
         snapshot.geometry_key = key_of(snapshot);
         snapshots_.push_back(std::move(snapshot));

@@ -77,7 +77,9 @@ private:
             report.shot = name;
             events_.frame_done(report);
         };
-        add(render_prepared(prepared, options_, events));
+        RenderSummary done = render_prepared(prepared, options_, events);
+        if (prepared.shot.view.exposure_keys) done.view = prepared.shot.view;  // not that of the last frame
+        add(done);
     }
 
     void add(const RenderSummary& shot) {

@@ -37,12 +37,17 @@ const std::filesystem::path& ReelPictures::source_file(const Key& key) const {
     return at->second;
 }
 
+ViewSpec ReelPictures::view_of(const Key& key) const {
+    const Shot& shot = plan_.sources[static_cast<std::size_t>(key.first)].prepared.shot;
+    return view_at(views_[static_cast<std::size_t>(key.first)], Sequence(shot.timing, shot.shutter).frame(key.second).time_s());
+}
+
 const Image& ReelPictures::display(const Key& key) {
     const auto known = kept_.find(key);
     if (known != kept_.end()) return known->second;
     const std::filesystem::path& file = source_file(key);
     const Image stored = image_io().read(file);
-    const ViewSpec& view = views_[static_cast<std::size_t>(key.first)];
+    const ViewSpec view = view_of(key);
     const Reel& reel = plan_.reel;
     return kept_[key] = centred(is_linear_file(file) ? apply_view(stored, view, false) : stored, reel.image.width,
                                 reel.image.height, reel.bars);
@@ -72,7 +77,7 @@ std::string ReelPictures::identity(int frame) const {
     const ReelFrame parts = plan_.edit.frame(frame);
     for (const ReelFrame::Layer& layer : parts.layers) {
         const Key key = key_of(layer);
-        const ViewSpec& view = views_[static_cast<std::size_t>(key.first)];
+        const ViewSpec view = view_of(key);
         hasher.add(stored_settings_hash(source_file(key)));
         hasher.add(static_cast<std::int64_t>(view.transform));
         hasher.add(view.exposure_stops);

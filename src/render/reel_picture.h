@@ -25,6 +25,8 @@ private:
     using Key = std::pair<int, int>;  ///< source, frame of its shot
     const std::filesystem::path& source_file(const Key& key) const;
     Key key_of(const ReelFrame::Layer& layer) const;
+    /// With the exposure that a frame of a source has.
+    ViewSpec view_of(const Key& key) const;
     const Image& display(const Key& key);
 
     const ReelPlan& plan_;

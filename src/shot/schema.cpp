@@ -90,7 +90,6 @@ constexpr FormRow kFormRows[] = {
          return fmt::format("a map of names to maps of {}", joined(keys, ", "));
      }},
     {kSections, [](const FieldSpec&) -> std::string { return "a list of maps"; }},
-    {kNamedSections, [](const FieldSpec&) -> std::string { return "a map of names to maps"; }},
 };
 
 }  // namespace

@@ -159,7 +159,6 @@ TEST(Instances, ReferencesMeanTheFirstCopy) {
     stage.shot.camera.look_at = NodeReference{"stage/Body", {}};
     const BoundShot bound = stage.bind();
     EXPECT_EQ(bound.bindings().position_of({"stage/Body", {}}, 0), glm::dvec3(0, 7, 0));
-    EXPECT_EQ(bound.bindings().position_of({"stage", {}}, 0), glm::dvec3(0, 0, 0));
 }
 
 TEST(Instances, LightsAreRepeatedUpToALimit) {

@@ -6,7 +6,7 @@
 namespace kadr::test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// A file with one of everything that can be pointed to, and one animation.
 struct PointerFile : GltfBuilder {
@@ -17,7 +17,7 @@ struct PointerFile : GltfBuilder {
                            {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}}};
         json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}}}}};
         json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_animation_pointer"};
-        json["animations"] = {{{"channels", json::array()}, {"samplers", json::array()}}};
+        json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
     }
     void point(const std::string& pointer, int output, const char* interpolation = "LINEAR") {
         auto& animation = json["animations"][0];
@@ -25,7 +25,6 @@ struct PointerFile : GltfBuilder {
                                          {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
         animation["samplers"].push_back({{"input", floats({0, 2}, "SCALAR")}, {"output", output}, {"interpolation", interpolation}});
     }
-    using json = nlohmann::json;
 };
 
 /// The only property that a clip drives with a pointer of so many components.

@@ -147,12 +147,12 @@ TEST_F(Animation, SaysWhatIsWrong) {
               "shot.yaml:4:23: error: unknown key 'rotation' in scenes.0.nodes.Hinge\n"
               "        nodes: { Hinge: { rotation: [0, 0, 0] } }\n"
               "                          ^~~~~~~~\n"
-              "  expected one of translate, rotate, scale");
+              "  expected one of translate, rotate, scale, visible");
     EXPECT_EQ(errors("nodes: [ Hinge ]"),
               "shot.yaml:4:12: error: scenes.0.nodes is a list of 1\n"
               "        nodes: [ Hinge ]\n"
               "               ^~~~~~~~~\n"
-              "  expected a map of names to maps of translate, rotate, scale");
+              "  expected a map of names to maps of translate, rotate, scale, visible");
     EXPECT_EQ(errors("hide: Collision"),
               "shot.yaml:4:11: error: scenes.0.hide is 'Collision'\n"
               "        hide: Collision\n"

@@ -60,7 +60,7 @@ TEST_F(Appearance, Messages) {
     EXPECT_EQ(error_of("materials: red"), R"(shot.yaml:4:29: error: scenes.0.materials is 'red'
     - { gltf: a.glb, materials: red }
                                 ^~~
-  expected a map of names to maps; for example materials: { Paint: { base_color: [0.8, 0.1, 0.1] } })");
+  expected a map of names to maps of base_color, metallic, roughness, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale; for example materials: { Paint: { base_color: [0.8, 0.1, 0.1] } })");
     EXPECT_EQ(error_of("materials: { Paint: red }"), R"(shot.yaml:4:38: error: scenes.0.materials.Paint is 'red'
     - { gltf: a.glb, materials: { Paint: red } }
                                          ^~~
@@ -82,9 +82,9 @@ TEST_F(Appearance, LightsTakeTracks) {
     const LightSpec bulb = parse("lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: 50 cm } } } ]").lights.at(0);
     EXPECT_DOUBLE_EQ(evaluate(bulb.range_m, 1), 0.5);
     EXPECT_EQ(errors_of(std::string(kBase) + "lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: infinite } } } ]\n"),
-              R"(shot.yaml:4:57: error: lights.0.range is infinite at a key
+              R"(shot.yaml:4:58: error: lights.0.range is infinite at a key
     lights: [ { type: point, range: { keys: { 0 s: 2 m, 1 s: infinite } } } ]
-                                                            ^~~~~~~~
+                                                             ^~~~~~~~
   expected a distance: nothing lies between it and infinity; key a large one, such as 1000 m)");
 }
 
@@ -94,7 +94,10 @@ TEST_F(Appearance, ExposureTakesATrackOfStops) {
     EXPECT_EQ(view_at(view, 0.75).exposure_keys, std::nullopt);
     EXPECT_FALSE(view.automatic);
     EXPECT_EQ(view_at(parse("view: { exposure: 3 }").view, 0.75).exposure_stops, 3);
-    EXPECT_EQ(errors_of(std::string(kBase) + "view: { exposure: { keys: { 0 s: auto } } }\n"), "?");
+    EXPECT_EQ(errors_of(std::string(kBase) + "view: { exposure: { keys: { 0 s: auto } } }\n"), R"(shot.yaml:4:34: error: view.exposure is 'auto'
+    view: { exposure: { keys: { 0 s: auto } } }
+                                     ^~~~
+  expected -200 to 200 stops or auto or a map of ev100, iso, time, f_stop)");
 }
 
 TEST_F(Appearance, BelongsToTheHash) {

@@ -44,30 +44,30 @@ TEST_F(InstanceForms, Messages) {
     EXPECT_EQ(error("[]"), R"(shot.yaml:4:16: error: scenes.0.instances is an empty list
         instances: []
                    ^~
-  expected a list of maps; for example instances: { grid: [10, 1, 10], spacing: [2 m, 2 m, 2 m] })");
+  expected a list of maps or a map of translate, rotate, scale, offset, grid, spacing, jitter, scatter, count, align, seed, random_yaw, random_scale, random_offset; for example instances: { grid: [10, 1, 10], spacing: [2 m, 2 m, 2 m] })");
     EXPECT_EQ(error("{ spacing: [1, 1, 1] }"), R"(shot.yaml:4:16: error: scenes.0.instances says neither grid nor scatter
         instances: { spacing: [1, 1, 1] }
-                   ^
+                   ^~~~~~~~~~~~~~~~~~~~~~
   expected one of them, or a list of places)");
     EXPECT_EQ(error("{ grid: [2, 0, 2] }"), R"(shot.yaml:4:28: error: scenes.0.instances.grid[1] is 0
         instances: { grid: [2, 0, 2] }
                                ^
-  expected 1 to 16777215)");
-    EXPECT_EQ(error("{ grid: [2, 1.5, 2] }"), R"(shot.yaml:4:24: error: scenes.0.instances.grid is a list
+  expected [x, y, z], each 1 to 16777215)");
+    EXPECT_EQ(error("{ grid: [2, 1.5, 2] }"), R"(shot.yaml:4:24: error: scenes.0.instances.grid is a list of 3
         instances: { grid: [2, 1.5, 2] }
-                           ^
+                           ^~~~~~~~~~~
   expected whole numbers: copies along x, y and z)");
     EXPECT_EQ(error("{ grid: [5000, 1, 5000] }"), R"(shot.yaml:4:24: error: scenes.0.instances.grid makes 25000000 copies
         instances: { grid: [5000, 1, 5000] }
-                           ^
+                           ^~~~~~~~~~~~~~~
   expected at most 16777215)");
     EXPECT_EQ(error("{ scatter: ground }"), R"(shot.yaml:4:27: error: scenes.0.instances has no count
         instances: { scatter: ground }
                               ^~~~~~
   expected count: the number of copies)");
-    EXPECT_EQ(error("{ scatter: ground, count: 5, random_scale: [2, 1] }"), R"(shot.yaml:4:59: error: scenes.0.instances.random_scale is a list, from more to less
+    EXPECT_EQ(error("{ scatter: ground, count: 5, random_scale: [2, 1] }"), R"(shot.yaml:4:59: error: scenes.0.instances.random_scale is a list of 2, from more to less
         instances: { scatter: ground, count: 5, random_scale: [2, 1] }
-                                                              ^
+                                                              ^~~~~~
   expected [least, largest])");
     EXPECT_EQ(error("[ { scale: 0 } ]"), R"(shot.yaml:4:27: error: scenes.0.instances.0.scale is zero
         instances: [ { scale: 0 } ]
@@ -76,10 +76,10 @@ TEST_F(InstanceForms, Messages) {
     EXPECT_EQ(error("[ { translate: [.nan, 0, 0] } ]"), R"(shot.yaml:4:32: error: scenes.0.instances.0.translate[0] is .nan
         instances: [ { translate: [.nan, 0, 0] } ]
                                    ^~~~
-  expected a number of m; infinite numbers and NaN are not allowed)");
+  expected [x, y, z]; infinite numbers and NaN are not allowed)");
     EXPECT_EQ(error("[ { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 9, 0] } } } ]"), R"(shot.yaml:4:28: error: scenes.0.instances.0.rotate is keyed
         instances: [ { rotate: { keys: { 0 s: [0, 0, 0], 1 s: [0, 9, 0] } } } ]
-                               ^
+                               ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
   expected a constant: animate the scene's transform, or its clips with `offset`)");
     EXPECT_EQ(error("[ { count: 3 } ]"), R"(shot.yaml:4:20: error: scenes.0.instances.0.count does not apply here
         instances: [ { count: 3 } ]
