@@ -6,13 +6,13 @@
 #include <cmath>
 #include <functional>
 
+#include "device/arc_blur.h"
 #include "device/rendered_frame.h"
 
 namespace kadr::test {
 namespace {
 
 constexpr double kFrame_s = 1.0 / 24;
-constexpr double kHalfWedge = 0.15;  // radians: half of what the mark of the disc takes
 
 /// A disc with one mark, a wedge around +x, that turns about +z at a constant speed; the shutter is open for the frame.
 GlowingStage marked_disc(double degrees_a_frame) {
@@ -26,42 +26,6 @@ GlowingStage marked_disc(double degrees_a_frame) {
     const double second = glm::radians(degrees_a_frame) / kFrame_s;
     stage.shot.scenes[0].transform.rotate.axis_angle = RotationTrack::AxisAngle{{0, 0, 1}, track<double>({{0, 0.0}, {1, second}})};
     return stage;
-}
-
-/// Share of the time for which the mark covers a direction: a trapezoid, whole turns on top of each other.
-double arc_coverage(double theta, double turned) {
-    double covered = 0;
-    for (double around = theta - 2 * kPi * std::ceil(turned / (2 * kPi) + 1); around <= turned + kHalfWedge; around += 2 * kPi)
-        covered += std::max(0.0, std::min(around + kHalfWedge, turned) - std::max(around - kHalfWedge, 0.0));
-    return covered / turned;
-}
-
-struct ArcPoint {
-    double theta, coverage;  ///< theta in [0, 2 pi)
-};
-
-/// Pixels between two radii of the disc, by direction.
-std::vector<ArcPoint> arc_of(const Image& image, double inner_px, double outer_px) {
-    std::vector<ArcPoint> points;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const double dx = x + 0.5 - 0.5 * image.width, dy = 0.5 * image.height - (y + 0.5), r = std::hypot(dx, dy);
-            if (r < inner_px || r > outer_px) continue;
-            points.push_back({std::fmod(std::atan2(dy, dx) + 2 * kPi, 2 * kPi), image.at(x, y, 3)});
-        }
-    return points;
-}
-
-/// Where a rising or falling edge of coverage passes half of `plateau`: the line through the points around `near`.
-double edge_at(const std::vector<ArcPoint>& points, double near, double plateau) {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const ArcPoint& p : points) {
-        const double x = std::remainder(p.theta - near, 2 * kPi);
-        if (std::abs(x) > 0.7 * kHalfWedge) continue;
-        n += 1, sx += x, sy += p.coverage, sxx += x * x, sxy += x * p.coverage;
-    }
-    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), level = (sy - slope * sx) / n;
-    return (0.5 * plateau - level) / slope;
 }
 
 TEST(BlurProof, AMarkedDiscIsSmearedAlongTheAnalyticArc) {
