@@ -28,6 +28,7 @@ struct RawOptions {
     int frame = 0, threads = 0, samples = 0;
     std::string time, frames, sheet, from;
     bool onion = false, path = false;
+    std::string limits, view, fps;
 };
 
 int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
@@ -96,6 +97,23 @@ double parse_seconds(const std::string& text) {
     return value;
 }
 
+ViewTransform parse_view(const std::string& text) {
+    static const std::map<std::string, ViewTransform> kViews{{"none", ViewTransform::none}, {"srgb", ViewTransform::srgb},
+                                                             {"agx", ViewTransform::agx}, {"aces", ViewTransform::aces},
+                                                             {"pbr-neutral", ViewTransform::pbr_neutral}};
+    const auto found = kViews.find(text);
+    if (found == kViews.end()) throw InputError(fmt::format("--view is '{}'", text), "expected none, srgb, agx, aces or pbr-neutral");
+    return found->second;
+}
+
+/// "24" or "24000/1001".
+Rational parse_fps(const std::string& text) {
+    const std::string expected = "expected frames a second, as in --fps 24 or --fps 24000/1001";
+    const std::size_t at = text.find('/');
+    const int numerator = parse_number(text.substr(0, at), "--fps", expected);
+    return Rational(numerator, at == std::string::npos ? 1 : parse_number(text.substr(at + 1), "--fps", expected));
+}
+
 /// The parser and where its values go.
 class Parser {
 public:
@@ -113,6 +131,7 @@ private:
     void add_check();
     void add_describe();
     void add_smoke();
+    void add_compare();
     void add_info();
     void add_devices();
 
@@ -122,6 +141,7 @@ private:
     void refuse_unknown_option(const CLI::App& app, const std::vector<std::string>& arguments) const;
     void fill_in();
     void fill_preview();
+    void fill_compare();
     void fill_overrides(RenderOptions& options) const;
 
     CLI::App app_{"kadr renders animated shots of glTF scenes to images and video.", "kadr"};
@@ -141,6 +161,7 @@ Parser::Parser() {
     add_check();
     add_describe();
     add_smoke();
+    add_compare();
     add_info();
     add_devices();
 }
@@ -233,6 +254,30 @@ void Parser::add_smoke() {
     app->add_option("--junit", invocation_.junit, "write the outcome as JUnit XML");
     app->add_flag("--update", invocation_.smoke.update, "write the golden images beside the shots");
     add_device(app);
+}
+
+void Parser::add_compare() {
+    CLI::App* app = add(Command::compare, "compare", "how far two frames, or two sequences, are apart",
+                        "kadr compare golden/pan.0012.exr output/pan/pan.0012.exr\n"
+                        "  kadr compare golden shots/pan.yaml --fail-above 0.05         (renders what is missing; exit code 1 above)\n"
+                        "  kadr compare a.{frame:04}.exr b.####.exr --maps maps --video maps/heat.mp4");
+    CompareOptions& options = invocation_.compare;
+    const char* what = "an image, a folder of images, a pattern with {frame:04}, %04d or ####, or a shot";
+    app->add_option("REFERENCE", options.reference, what)->required();
+    app->add_option("TEST", options.test, what)->required();
+    app->add_option("--frames", raw_.frames, "frames to compare: 1-24x2,40 (default: all)");
+    app->add_option("--fail-above", raw_.limits, "exit with 1 where a frame's FLIP is above this, or flip=0.05,rmse=0.01,relmse=0.1; of psnr=30 "
+                                                 "and ssim=0.95: below");
+    app->add_option("--maps", options.maps, "folder for the FLIP error maps, a PNG a frame");
+    app->add_option("--video", options.video, "reference, test and error map side by side, a video file");
+    app->add_option("--fps", raw_.fps, "frames a second of --video (default: 24)");
+    app->add_option("--view", raw_.view, "how linear images (.exr) are looked at: none, srgb, agx, aces, pbr-neutral (default: srgb)");
+    app->add_option("--exposure", options.difference.view.exposure_stops, "stops that linear images are brightened by first")
+        ->check(CLI::Range(-100.0, 100.0));
+    app->add_option("--pixels-per-degree", options.difference.pixels_per_degree, "how large the viewer sees a pixel")
+        ->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+    add_device(app);
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
 
 void Parser::add_info() {
@@ -346,9 +391,20 @@ void Parser::fill_preview() {
     std::tie(preview.columns, preview.rows) = parse_sheet(raw_.sheet);
 }
 
+void Parser::fill_compare() {
+    if (!commands_[Command::compare]->parsed()) return;
+    CompareOptions& compare = invocation_.compare;
+    compare.device = invocation_.render.device;
+    if (!raw_.frames.empty()) compare.frames = parse_frame_list(raw_.frames);
+    if (commands_[Command::compare]->count("--fail-above") > 0) compare.limits = parse_limits(raw_.limits);
+    if (!raw_.view.empty()) compare.difference.view.transform = parse_view(raw_.view);
+    if (!raw_.fps.empty()) compare.fps = parse_fps(raw_.fps);
+}
+
 void Parser::fill_in() {
     fill_overrides(invocation_.render);
     fill_preview();
+    fill_compare();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());
     invocation_.smoke.shots = invocation_.shots;
     invocation_.smoke.device = invocation_.render.device;

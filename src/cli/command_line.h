@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "measure/compare_job.h"
 #include "render/render_job.h"
 #include "render/smoke.h"
 
 namespace kadr {
 
-enum class Command { render, preview, check, describe, smoke, info, devices };
+enum class Command { render, preview, check, describe, smoke, compare, info, devices };
 
 /// What the user asked for. Only the members of `command` are filled in.
 struct Invocation {
@@ -17,6 +18,7 @@ struct Invocation {
     RenderOptions render;                        ///< render, preview (its shot and overrides), check (overrides)
     PreviewOptions preview;
     SmokeOptions smoke;
+    CompareOptions compare;
     std::vector<std::filesystem::path> shots;    ///< check
     std::filesystem::path file;                  ///< info
     std::filesystem::path junit;

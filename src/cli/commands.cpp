@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -105,6 +106,76 @@ int run_smoke(const Invocation& invocation) {
     return any([](const SmokeCase& result) { return !result.failures.empty(); }) ? kFailed : kDone;
 }
 
+/// JSON has no infinity: the PSNR of equal images is null.
+nlohmann::ordered_json json_of(const FrameDifference& difference) {
+    nlohmann::ordered_json json;
+    for (const Metric metric : {Metric::rmse, Metric::relmse, Metric::psnr, Metric::ssim, Metric::flip}) {
+        const double value = value_of(difference, metric);
+        json[name_of(metric)] = std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+    }
+    json["largest"] = difference.values.largest;
+    json["not_finite"] = difference.not_finite;
+    return json;
+}
+
+std::string figures_of(const FrameDifference& d) {
+    return fmt::format("{:>10.6f} {:>10.6f} {:>7.2f} {:>8.5f} {:>8.5f}", d.values.rms, d.relmse, d.values.psnr_db, d.ssim, d.flip);
+}
+
+void print_compared(const Invocation& invocation, const ComparedFrame& frame, std::size_t label_width) {
+    const FrameDifference& d = frame.difference;
+    if (invocation.json) {
+        nlohmann::ordered_json json{{"event", "frame"}, {"frame", frame.pair.label}, {"reference", frame.pair.reference.string()},
+                                    {"test", frame.pair.test.string()}};
+        json.update(json_of(d));
+        json["largest_at"] = {d.values.x, d.values.y};
+        json["largest_channel"] = d.largest_channel;
+        if (!frame.map.empty()) json["map"] = frame.map.string();
+        json["failures"] = frame.failures;
+        print(json_line(json));
+    } else {
+        print(fmt::format("{:<{}} {}   {:.4g} at {},{} in {}{}\n", frame.pair.label, label_width, figures_of(d), d.values.largest, d.values.x, d.values.y,
+                          d.largest_channel, d.not_finite > 0 ? fmt::format("; {} pixels are NaN or infinite", d.not_finite) : ""));
+        for (const std::string& failure : frame.failures) print(fmt::format("  FAILED: {}\n", failure));
+    }
+    std::fflush(stdout);
+}
+
+void print_compared_all(const Invocation& invocation, const CompareSummary& summary, std::size_t label_width) {
+    const std::string worst = summary.frames[summary.worst].pair.label;
+    if (invocation.json) {
+        nlohmann::ordered_json json{{"event", "summary"}, {"frames", summary.frames.size()}};
+        json.update(json_of(summary.mean));
+        json["worst"] = worst;
+        if (!summary.video.empty()) json["video"] = summary.video.string();
+        json["failed"] = summary.failed;
+        return print(json_line(json));
+    }
+    if (summary.frames.size() > 1)
+        print(fmt::format("{:<{}} {}   worst: {}, FLIP {:.5f}\n", "mean", label_width, figures_of(summary.mean), worst,
+                          summary.frames[summary.worst].difference.flip));
+    if (!summary.video.empty()) print(fmt::format("video: {}\n", summary.video.string()));
+}
+
+int run_compare(const Invocation& invocation) {
+    const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, false);
+    CompareEvents events;
+    events.render = reporter->events();
+    bool headed = invocation.json;
+    std::size_t label_width = 8;
+    events.frame_done = [&](const ComparedFrame& frame) {
+        reporter->clear();
+        label_width = std::max(label_width, frame.pair.label.size());
+        if (!headed)
+            print(fmt::format("{:<{}} {:>10} {:>10} {:>7} {:>8} {:>8}   {}\n", "frame", label_width, "RMSE", "relMSE", "PSNR", "SSIM", "FLIP", "largest difference"));
+        headed = true;
+        print_compared(invocation, frame, label_width);
+    };
+    const CompareSummary summary = compare(invocation.compare, events);
+    print_compared_all(invocation, summary, label_width);
+    return summary.failed ? kFailed : kDone;
+}
+
 int run_info(const Invocation& invocation) {
     const Metadata metadata = describe_image(invocation.file);
     if (invocation.json) {
@@ -132,7 +203,8 @@ int run_devices(const Invocation& invocation) {
 int run_command(const Invocation& invocation) {
     static const std::map<Command, int (*)(const Invocation&)> kCommands = {
         {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
-        {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::info, run_info},
+        {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::compare, run_compare},
+        {Command::info, run_info},
         {Command::devices, run_devices},
     };
     return kCommands.at(invocation.command)(invocation);

@@ -1,13 +1,14 @@
 #include "output/flip.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <numbers>
 #include <vector>
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <tbb/parallel_for.h>
 
 #include "base/error.h"
 
@@ -87,11 +88,12 @@ Plane filtered(const Plane& source, const Kernel& along_x, const Kernel& along_y
     const auto convolve = [](const Plane& in, const Kernel& kernel, int dx, int dy) {
         Plane out(in.width, in.height);
         const int radius = static_cast<int>(kernel.size() / 2);
-        for (int y = 0; y < in.height; ++y)
+        tbb::parallel_for(0, in.height, [&](int y) {
             for (int x = 0; x < in.width; ++x)
                 for (int k = -radius; k <= radius; ++k)
                     out.at(x, y) += kernel[static_cast<std::size_t>(k + radius)] *
                                     in.at(std::clamp(x + k * dx, 0, in.width - 1), std::clamp(y + k * dy, 0, in.height - 1));
+        });
         return out;
     };
     return convolve(convolve(source, along_x, 1, 0), along_y, 0, 1);
@@ -224,7 +226,7 @@ double feature_error(const Features& a, const Features& b, std::size_t i) {
 
 }  // namespace
 
-double mean_flip(const Image& reference, const Image& test, double pixels_per_degree) {
+Image flip_map(const Image& reference, const Image& test, double pixels_per_degree) {
     if (reference.width != test.width || reference.height != test.height)
         throw InputError(fmt::format("the images to compare are {} x {} and {} x {}", reference.width, reference.height,
                                      test.width, test.height),
@@ -234,10 +236,20 @@ double mean_flip(const Image& reference, const Image& test, double pixels_per_de
     const std::vector<Color> colors_b = seen_colors(opponent_b, pixels_per_degree);
     const FeatureKernels kernels = feature_kernels(pixels_per_degree);
     const Features features_a = features_of(opponent_a[0], kernels), features_b = features_of(opponent_b[0], kernels);
+    Image map{reference.width, reference.height, {"Y"}, {}};
+    map.pixels.reserve(colors_a.size());
+    for (std::size_t i = 0; i < colors_a.size(); ++i) {
+        const double error = std::pow(color_error(colors_a[i], colors_b[i]), 1 - feature_error(features_a, features_b, i));
+        map.pixels.push_back(static_cast<float>(error));
+    }
+    return map;
+}
+
+double mean_flip(const Image& reference, const Image& test, double pixels_per_degree) {
+    const Image map = flip_map(reference, test, pixels_per_degree);
     double sum = 0;
-    for (std::size_t i = 0; i < colors_a.size(); ++i)
-        sum += std::pow(color_error(colors_a[i], colors_b[i]), 1 - feature_error(features_a, features_b, i));
-    return colors_a.empty() ? 0 : sum / static_cast<double>(colors_a.size());
+    for (const float error : map.pixels) sum += error;
+    return map.pixels.empty() ? 0 : sum / static_cast<double>(map.pixels.size());
 }
 
 }  // namespace kadr

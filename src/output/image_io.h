@@ -15,6 +15,15 @@ using Metadata = std::map<std::string, std::string>;
 
 using Bytes = std::vector<unsigned char>;
 
+/// How far the values of two images are apart, over all their pixels and channels.
+struct ValueDifference {
+    double mean = 0;               ///< of the absolute differences
+    double rms = 0;                ///< root of the mean square difference
+    double psnr_db = 0;            ///< 20 log10(largest value of either image, at least 1, over rms); infinite where equal
+    double largest = 0;            ///< absolute difference
+    int x = 0, y = 0, channel = 0; ///< where the largest is
+};
+
 /// The image library behind an interface: OpenImageIO lives in a module of its own that is opened in the background
 /// (linking it the plain way costs 0.3 s at every start).
 class ImageIo {
@@ -43,6 +52,15 @@ public:
 
     /// Whether the file is an image with nothing missing at its end; cheap (nothing is decoded but the last rows of an EXR).
     virtual bool is_complete(const std::filesystem::path& path) const = 0;
+
+    /// What the library's own comparison says (the figures that its `idiff` prints).
+    /// @param a, b  finite values, of one size and with the same number of channels
+    /// @throws RenderError  when the library refuses
+    virtual ValueDifference compare(const Image& a, const Image& b) const = 0;
+
+    /// The first channel of an image as colours: 0 is black, 1 the brightest of the map "magma" (perceptually even).
+    /// @return display-referred R, G, B  @throws RenderError  when the library refuses
+    virtual Image heat_map(const Image& values) const = 0;
 };
 
 /// Starts opening the module on another thread; cheap to call again.

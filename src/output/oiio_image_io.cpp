@@ -1,5 +1,7 @@
 // The image module: everything that needs OpenImageIO, in a shared library of its own (see image_module.h).
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -7,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -175,6 +178,12 @@ bool has_last_row(OIIO::ImageInput& input) {
     return input.read_scanline(spec.y + spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
 }
 
+/// The pixels where they are, not copied.
+OIIO::ImageBuf wrapped(const Image& image) {
+    const OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeDesc::FLOAT);
+    return OIIO::ImageBuf(spec, const_cast<float*>(image.pixels.data()));
+}
+
 class OiioImageIo : public ImageIo {
 public:
     OiioImageIo() {
@@ -222,6 +231,24 @@ public:
         // Taken, so that the library does not print them.
         static_cast<void>(input ? input->geterror() : OIIO::geterror());
         return complete;
+    }
+
+    ValueDifference compare(const Image& a, const Image& b) const override {
+        // Pixels beyond the thresholds are counted (nobody reads that) and set found.error: images that differ are no error here.
+        constexpr float kAny = std::numeric_limits<float>::max();
+        const OIIO::ImageBuf first = wrapped(a), second = wrapped(b);
+        const OIIO::ImageBufAlgo::CompareResults found = OIIO::ImageBufAlgo::compare(first, second, kAny, kAny);
+        if (found.error) throw RenderError(fmt::format("cannot compare two images: {}", OIIO::geterror()));
+        return {found.meanerror, found.rms_error, found.PSNR, found.maxerror, found.maxx, found.maxy, found.maxc};
+    }
+
+    Image heat_map(const Image& values) const override {
+        const OIIO::ImageBuf colors = OIIO::ImageBufAlgo::color_map(wrapped(values), 0, "magma");
+        Image image{values.width, values.height, {"R", "G", "B"}, {}};
+        image.pixels.resize(image.channels.size() * static_cast<std::size_t>(values.width) * static_cast<std::size_t>(values.height));
+        if (colors.has_error() || !colors.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, image.pixels.data()))
+            throw RenderError(fmt::format("cannot colour an error map: {}", colors.geterror()));
+        return image;
     }
 };
 
