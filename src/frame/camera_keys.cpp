@@ -19,8 +19,6 @@ namespace {
 constexpr double kDefaultFocalMm = 50;
 constexpr double kWidestField = 3.1;  // radians: the picture's plane has to be somewhere
 constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees
-// An interpolated camera has to keep within the tolerance between the times that are checked, too.
-constexpr double kMargin = 0.9;
 
 double aspect_of(const ImageSpec& image) { return image.pixel_aspect * image.width / image.height; }
 
@@ -236,16 +234,21 @@ kernels::CameraKey to_key(const CameraState& camera, const glm::dvec3& origin) {
             static_cast<float>(camera.lens_radius), static_cast<float>(camera.focus_distance)};
 }
 
-/// Error of evenly spaced states at a quarter, the half and three quarters of every step, where the fit looks at it.
-double worst_error_px(const BoundShot& shot, const std::vector<CameraState>& states, double open_s, double close_s) {
+/// Error of evenly spaced states at a quarter, the half and three quarters of every step, where the fit looks at it, and
+/// where tracks have keys: a path that has a corner there strays farthest in it.
+/// @param corners  in (0, 1)
+double worst_error_px(const BoundShot& shot, const std::vector<CameraState>& states, const std::vector<double>& corners, double open_s, double close_s) {
     double worst = 0;
+    const auto look = [&](double u) {
+        const double position = u * static_cast<double>(states.size() - 1);
+        const std::size_t from = std::min(static_cast<std::size_t>(position), states.size() - 2);
+        const CameraState is = between(states[from], states[from + 1], position - static_cast<double>(from));
+        worst = std::max(worst, pixels_between(is, camera_at(shot, std::lerp(open_s, close_s, u)), shot.shot().image.height));
+    };
     const std::size_t checks = 4 * (states.size() - 1);
-    for (std::size_t i = 0; i < checks; ++i) {
-        if (i % 4 == 0) continue;
-        const double time_s = std::lerp(open_s, close_s, static_cast<double>(i) / static_cast<double>(checks));
-        const CameraState is = between(states[i / 4], states[i / 4 + 1], 0.25 * static_cast<double>(i % 4));
-        worst = std::max(worst, pixels_between(is, camera_at(shot, time_s), shot.shot().image.height));
-    }
+    for (std::size_t i = 0; i < checks; ++i)
+        if (i % 4 != 0) look(static_cast<double>(i) / static_cast<double>(checks));
+    for (const double u : corners) look(u);
     return worst;
 }
 
@@ -297,21 +300,25 @@ CameraState camera_at(const BoundShot& shot, double time_s) {
 }
 
 CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin) {
+    CameraFit fit;
     std::vector<CameraState> states{camera_at(shot, open_s)};
     if (close_s > open_s) {
         const std::vector<double> keys = camera_key_times(shot, open_s, close_s);
-        const double tolerance = kMargin * shot.shot().render.motion_tolerance_px;
-        const int height = shot.shot().image.height;
-        states = fit_keys(
-            even_segments_for(keys), static_cast<int>(std::min<std::size_t>(keys.size() + 1, kMostSegments)), kMostSegments,
-            [&](double u) { return camera_at(shot, open_s + u * (close_s - open_s)); }, std::equal_to<>(),
-            [&](const CameraState& a, const CameraState& b, double u, const CameraState& wanted) {
-                return angle_between(a.rotation, wanted.rotation) + angle_between(wanted.rotation, b.rotation) <= kWidestStep &&
-                       pixels_between(between(a, b, u), wanted, height) <= tolerance;
-            });
+        const double tolerance = kMotionMargin * shot.shot().render.motion_tolerance_px;
+        const int height = shot.shot().image.height, base = even_segments_for(keys);
+        int at_least = static_cast<int>(std::min<std::size_t>(keys.size() + 1, kMostSegments));
+        for (;; at_least = 2 * static_cast<int>(states.size() - 1)) {
+            states = fit_keys(
+                base, at_least, kMostSegments, [&](double u) { return camera_at(shot, open_s + u * (close_s - open_s)); }, std::equal_to<>(),
+                [&](const CameraState& a, const CameraState& b, double u, const CameraState& wanted) {
+                    return angle_between(a.rotation, wanted.rotation) + angle_between(wanted.rotation, b.rotation) <= kWidestStep &&
+                           pixels_between(between(a, b, u), wanted, height) <= tolerance;
+                });
+            fit.error_px = states.size() > 1 ? worst_error_px(shot, states, keys, open_s, close_s) : 0;
+            if (fit.error_px <= tolerance || 2 * static_cast<int>(states.size() - 1) > kMostSegments) break;
+        }
+        for (const double u : keys) fit.corners_s.push_back(std::lerp(open_s, close_s, u));
     }
-    CameraFit fit;
-    if (states.size() > 1) fit.error_px = worst_error_px(shot, states, open_s, close_s);
     for (CameraState& state : states) {
         if (&state != &states.front() && glm::dot((&state)[-1].rotation, state.rotation) < 0) state.rotation = -state.rotation;
         fit.keys.push_back(to_key(state, origin));

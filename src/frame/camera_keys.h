@@ -29,6 +29,7 @@ CameraState camera_at(const BoundShot& shot, double time_s);
 struct CameraFit {
     std::vector<kernels::CameraKey> keys;  ///< evenly spaced, relative to the render origin
     double error_px = 0;                   ///< how far the subject's image strays from where the true camera has it, at most
+    std::vector<double> corners_s;         ///< keys of its tracks: good times to split the shutter at where the error is too large
 };
 
 /// Keys over a part of the shutter: one when the camera is still, else as many as the motion tolerance and 10 degrees a

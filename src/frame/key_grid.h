@@ -7,6 +7,9 @@ namespace kadr {
 
 inline constexpr int kMostSegments = 128;  ///< 129 frames: Embree's limit
 
+/// Of the motion tolerance, what a fit may use up: it looks in three places of a segment and at corners, not everywhere.
+inline constexpr double kMotionMargin = 0.9;
+
 /// The smallest number of even segments of [0, 1] whose ends meet all the given times (each inside it) to 1e-6, among
 /// 1 ... 16; 1 where none does. A key between two frames is smoothed away and converges only like 1/n.
 int even_segments_for(const std::vector<double>& times);

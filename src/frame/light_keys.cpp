@@ -20,7 +20,6 @@ namespace kadr {
 namespace {
 
 constexpr int kMostLightSegments = 32;
-constexpr double kRelativeTolerance = 1e-3;  // of a light's own values: a tenth of a step of 8-bit output
 
 kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
@@ -181,29 +180,49 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSpec& spec, d
     return times;
 }
 
+/// Deviation of evenly spaced keys at a quarter, the half and three quarters of every step, and where tracks have keys of
+/// their own: corners stray farthest in themselves.
+/// @param at  (u in [0, 1]) -> the true light
 template <class At>
-void add_keys(std::vector<double> key_times, double open_s, double close_s, double distance_m, At at, SceneSnapshot& snapshot) {
+double worst_deviation(const std::vector<kernels::Light>& keys, const std::vector<double>& corners, double distance_m, At at) {
+    double worst = 0;
+    const auto look = [&](double u) {
+        const double position = u * static_cast<double>(keys.size() - 1);
+        const std::size_t from = std::min(static_cast<std::size_t>(position), keys.size() - 2);
+        worst = std::max(worst, deviation(keys[from], keys[from + 1], position - static_cast<double>(from), at(u), distance_m));
+    };
+    const std::size_t checks = 4 * (keys.size() - 1);
+    for (std::size_t i = 1; i < checks; ++i)
+        if (i % 4 != 0) look(static_cast<double>(i) / static_cast<double>(checks));
+    for (const double u : corners) look(u);
+    return worst;
+}
+
+/// @return the key times where the light misses its tolerance, else none
+template <class At>
+std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, double close_s, double distance_m, At at, SceneSnapshot& snapshot) {
     const auto at_step = [&](double u) { return at(open_s + u * (close_s - open_s)); };
     std::vector<kernels::Light> keys{at(open_s)};
+    double error = 0;
     if (close_s > open_s) {
+        std::vector<double> key_times = times_s;
         for (double& time : key_times) time = (time - open_s) / (close_s - open_s);
-        const int at_least = static_cast<int>(std::min<std::size_t>(key_times.size() + 1, kMostLightSegments));
-        double error = 0;
-        keys = fit_keys(
-            even_segments_for(key_times), at_least, kMostLightSegments, at_step, same,
-            [distance_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) {
-                return deviation(a, b, u, wanted, distance_m) <= kRelativeTolerance;
-            });
-        for (std::size_t i = 0; i + 1 < keys.size(); ++i)
-            for (int quarter = 1; quarter < 4; ++quarter) {
-                const double u = (static_cast<double>(i) + 0.25 * quarter) / static_cast<double>(keys.size() - 1);
-                error = std::max(error, deviation(keys[i], keys[i + 1], 0.25 * quarter, at_step(u), distance_m));
-            }
+        const int base = even_segments_for(key_times);
+        int at_least = static_cast<int>(std::min<std::size_t>(key_times.size() + 1, kMostLightSegments));
+        for (;; at_least = 2 * static_cast<int>(keys.size() - 1)) {
+            keys = fit_keys(base, at_least, kMostLightSegments, at_step, same,
+                            [distance_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) {
+                                return deviation(a, b, u, wanted, distance_m) <= kLightTolerance;
+                            });
+            error = keys.size() > 1 ? worst_deviation(keys, key_times, distance_m, at_step) : 0;
+            if (error <= kLightTolerance || 2 * static_cast<int>(keys.size() - 1) > kMostLightSegments) break;
+        }
         snapshot.light_error = std::max(snapshot.light_error, error);
     }
     keep_surface(keys);
     snapshot.lights.push_back({static_cast<std::uint32_t>(snapshot.light_keys.size()), static_cast<std::uint32_t>(keys.size())});
     snapshot.light_keys.insert(snapshot.light_keys.end(), keys.begin(), keys.end());
+    return error > kLightTolerance ? times_s : std::vector<double>();
 }
 
 std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, double open_s, double close_s) {
@@ -214,19 +233,21 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, d
 
 }  // namespace
 
-void add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
+std::vector<double> add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const glm::dvec3 origin = snapshot.render_origin;
     const double distance_m = camera_at(shot, open_s).subject_distance;
     const double middle_s = 0.5 * (open_s + close_s);  // switches do not change within a part of the shutter
+    std::vector<double> missed;
     for (const LightSpec& spec : shot.shot().lights)
         if (is_on(spec.visible, middle_s))
-            add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance_m,
-                     [&](double time) { return light_at(shot, spec, time, origin); }, snapshot);
+            append(missed, add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance_m,
+                                    [&](double time) { return light_at(shot, spec, time, origin); }, snapshot));
     const VisibilityRig::States states = shot.bindings().visibility.at(middle_s);
     for (const LightSeed& seed : shot.bindings().lights)
         if (states.visible(seed.node))
-            add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
-                     [&](double time) { return light_at(shot, seed, time, origin); }, snapshot);
+            append(missed, add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
+                                    [&](double time) { return light_at(shot, seed, time, origin); }, snapshot));
+    return missed;
 }
 
 std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s) {

@@ -21,7 +21,6 @@ namespace kadr {
 namespace {
 
 constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees: what bounds of moving instances are good for
-constexpr double kMargin = 0.9;         // the error is looked at in three places of a segment, not everywhere
 constexpr double kBesideCamera = 0.05;  // of an instance's radius: nearer corners stand for faces that are farther away
 constexpr double kVanishing = 1e-5;     // of the scale near by: what stands for a scale of zero
 constexpr std::size_t kBatch = 2048;    // instances evaluated together; their samples stay in the cache
@@ -33,11 +32,19 @@ struct Fitted {
     float error_px = 0;
 };
 
+/// The keys of a node that no even grid meets. Paths have corners there, and a corner strays farthest in itself, wherever
+/// it lies between the times of the grid.
+struct Corners {
+    std::vector<double> u;  ///< in (0, 1)
+    std::vector<PixelScale> scales;
+    SharedTransforms transforms;
+};
+
 struct Batch {
     std::vector<Fitted> fitted;           ///< parallel to the batch's instances
     std::vector<Decomposition> frames;
     std::vector<Diagnostic> problems;
-    bool too_fast = false;
+    MotionFit fit;
 };
 
 /// The interval, and what the camera does in it.
@@ -129,6 +136,15 @@ public:
         return widest;
     }
 
+    /// Screen-space error of every fourth place as a frame, where the true place at `u` in [0, 1] is `wanted`.
+    double error_px_at(double u, const glm::dmat4& wanted, const PixelScale& scale) const {
+        const std::size_t segments = places_.size() / 4;
+        const double position = u * static_cast<double>(segments);
+        const std::size_t from = 4 * std::min(static_cast<std::size_t>(position), segments - 1);
+        const glm::dmat4 is = compose(interpolate(parts_[from], parts_[from + 4], position - 0.25 * static_cast<double>(from)));
+        return pixels_between(is, wanted, scale, negligible());
+    }
+
     /// Screen-space error of every fourth place as a frame; stops early once beyond `enough`.
     double error_px(double enough) const {
         double worst = 0;
@@ -183,6 +199,7 @@ public:
     BatchFit(const Interval& interval, std::span<const Instance> instances, Batch& batch)
         : interval_(interval), instances_(instances), batch_(batch), rig_(interval.shot.bindings().rig), scene_(interval.shot.scene()) {
         batch_.fitted.resize(instances.size());
+        uneven_.resize(instances.size());
     }
 
     void run() {
@@ -252,11 +269,40 @@ private:
 
     void enqueue(std::size_t i, const NodeRig::Activity& activity) {
         const double steps = std::ceil(activity.turn_rad / kWidestStep - 1e-9);
-        if (!(steps <= kMostSegments)) batch_.too_fast = true;
+        if (!(steps <= kMostSegments)) batch_.fit.too_fast = true;
         // Keys that no even grid meets are smoothed: more segments than keys, so that none is passed over.
         const int keys = std::min(activity.keys + 1, kMostSegments);
         const int wanted = std::max(steps <= kMostSegments ? static_cast<int>(steps) : kMostSegments, keys);
+        uneven_[i] = activity.keys > 0 && activity.grid == 1;
         waiting_[refined_segments(activity.grid, wanted)].push_back(i);
+    }
+
+    Corners& corners_of(std::size_t i) {
+        const std::pair<int, double> key{node_of(i), instances_[i].clip_offset_s()};
+        if (const auto found = corners_.find(key); found != corners_.end()) return found->second;
+        const std::vector<double> times = rig_.key_times_of(key.first, interval_.open_s, interval_.close_s, key.second);
+        Corners corners{{}, {}, SharedTransforms(interval_.shot.bindings(), times)};
+        for (const double time : times) {
+            corners.u.push_back((time - interval_.open_s) / (interval_.close_s - interval_.open_s));
+            corners.scales.push_back(interval_.scale_at(corners.u.back()));
+        }
+        return corners_.emplace(key, std::move(corners)).first->second;
+    }
+
+    void miss(std::size_t i) {
+        batch_.fit.missed = true;
+        if (!uneven_[i]) return;
+        for (const double u : corners_of(i).u) batch_.fit.corners_s.push_back(interval_.time(u));
+    }
+
+    double error_px_in_corners(std::size_t i, const Fit& fit) {
+        Corners& corners = corners_of(i);
+        const glm::dmat4 local = copied_from_geometry(i);
+        const std::vector<glm::dmat4> places = corners.transforms.world_from_node(instances_[i]);
+        double worst = 0;
+        for (std::size_t k = 0; k < places.size(); ++k)
+            worst = std::max(worst, fit.error_px_at(corners.u[k], relative(places[k] * local, interval_.origin), corners.scales[k]));
+        return worst;
     }
 
     void fit_moving(int segments, const std::vector<std::size_t>& members) {
@@ -289,16 +335,18 @@ private:
             return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
                           "expected scales that keep their sign; use a step key to mirror an object");
         // Where vertices bend as well, both share the tolerance.
-        const double enough = kMargin * interval_.tolerance_px * (instances_[i].seed->deformer >= 0 ? 1 - kDeformationShare : 1);
+        const double enough = kMotionMargin * interval_.tolerance_px * (instances_[i].seed->deformer >= 0 ? 1 - kDeformationShare : 1);
         const bool last = 2 * segments > kMostSegments;
         const double step = fit.widest_step();
-        const double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
+        double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
+        if (uneven_[i] && (last || error <= enough)) error = std::max(error, error_px_in_corners(i, fit));
         const double rounding = 1e-9;  // a turn of exactly 10 degrees a step, summed from four
         if ((step > kWidestStep + rounding || error > enough) && !last) {
             waiting_[2 * segments].push_back(i);
             return;
         }
-        if (step > kWidestStep + rounding) batch_.too_fast = true;
+        if (step > kWidestStep + rounding) batch_.fit.too_fast = true;
+        if (error > enough) miss(i);
         fit.append_frames(batch_.frames, 4);
         accept(i, first, segments == 1 && fit.linear(enough), error);
     }
@@ -309,6 +357,8 @@ private:
     const NodeRig& rig_;
     const Scene& scene_;
     std::map<int, std::vector<std::size_t>> waiting_;  ///< by segments
+    std::vector<bool> uneven_;                          ///< whether some keys lie beside every even grid
+    std::map<std::pair<int, double>, Corners> corners_;  ///< by node and clip offset
 };
 
 std::vector<Instance> batch_of(const InstanceList& instances, std::size_t b) {
@@ -375,6 +425,7 @@ void pack(const BoundShot& shot, const std::vector<Batch>& batches, SceneSnapsho
             add_instance(shot, members[i], snapshot);
             motion.headers.push_back({count, fitted.count});
             motion.linear.push_back(fitted.linear ? 1 : 0);
+            if (members[i].seed->deformer >= 0) motion.bending_error_px = std::max<double>(motion.bending_error_px, fitted.error_px);
             if (fitted.error_px > motion.max_error_px) {
                 motion.max_error_px = fitted.error_px;
                 motion.worst = static_cast<std::uint32_t>(motion.headers.size() - 1);
@@ -444,12 +495,17 @@ glm::dmat4 interpolate(const MotionFrames& motion, const kernels::TransformHeade
     return compose(interpolate(frame_parts(motion, first), frame_parts(motion, first + 1), position - segment));
 }
 
-bool add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
+MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const Interval interval{shot, snapshot.render_origin, open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
     const std::vector<Batch> batches = fit_batches(interval, shot.bindings().instances);
-    if (std::any_of(batches.begin(), batches.end(), [](const Batch& batch) { return batch.too_fast; })) return false;
-    pack(shot, batches, snapshot);
-    return true;
+    MotionFit fit;
+    for (const Batch& batch : batches) {
+        fit.too_fast |= batch.fit.too_fast;
+        fit.missed |= batch.fit.missed;
+        fit.corners_s.insert(fit.corners_s.end(), batch.fit.corners_s.begin(), batch.fit.corners_s.end());
+    }
+    if (!fit.too_fast) pack(shot, batches, snapshot);
+    return fit;
 }
 
 }  // namespace kadr

@@ -20,10 +20,16 @@ Decomposition frame_parts(const MotionFrames& motion, std::size_t frame);
 kernels::FrameSrt to_srt(const Decomposition& parts, float time, const kernels::FrameSrt* previous);
 kernels::FrameMatrix to_matrix(const Decomposition& parts, float time);
 
+/// How near the motion frames of a part of the shutter come.
+struct MotionFit {
+    bool too_fast = false;          ///< something turns so fast that 129 frames are not enough: nothing was added
+    bool missed = false;            ///< something strays beyond the motion tolerance although it has 129 frames
+    std::vector<double> corners_s;  ///< keys, beside every even grid, of what strays: good times to split the shutter at
+};
+
 /// Fills snapshot.instances and snapshot.motion for the part [open_s, close_s] of the shutter. The snapshot's render
 /// origin is set already.
-/// @return false  where something turns so fast that 129 frames are not enough: the shutter has to be split
 /// @throws InputError  naming the nodes whose transform is not finite, or whose scale passes through zero
-bool add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot);
+MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot);
 
 }  // namespace kadr

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,6 +14,7 @@
 #include "frame/camera_keys.h"
 #include "frame/deform.h"
 #include "frame/environment_at.h"
+#include "frame/key_grid.h"
 #include "frame/light_keys.h"
 #include "frame/motion_frames.h"
 #include "frame/problem.h"
@@ -25,7 +27,11 @@ namespace {
 
 constexpr std::size_t kMostParts = 64;
 constexpr int kDeepestChange = 4;  // what changes fast is followed in up to 2^4 steps
+constexpr int kDeepestError = 5;   // what strays is followed in up to 2^5 parts
+static_assert(1 << kDeepestError == kMostPartsForError);
 constexpr int kDeepestSplit = 6;  // 2^6 parts of 128 steps of 10 degrees: more than 200 turns in one shutter
+
+constexpr double kRounding = 1e-9;  // of shares of the shutter
 
 /// A part of the shutter within which everything is continuous.
 struct Part {
@@ -189,33 +195,81 @@ private:
         const Part inside = inside_of(part);
         SceneSnapshot snapshot;
         snapshot.render_origin = origin_;
-        const double middle_s = 0.5 * (inside.open_s + inside.close_s);
-        if (depth < kDeepestChange && changes_fast(shot_, inside.open_s, inside.close_s)) return add_halves(part, depth);
-        if (!add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot)) return add_halves(part, depth);
+        if (depth < kDeepestChange && changes_fast(shot_, inside.open_s, inside.close_s)) return split_at(middle(part), part, depth);
+        const MotionFit fit = add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot);
+        if (fit.too_fast) return split_at(middle(part), part, depth);
+        const bool may_split = depth < kDeepestError && shot_.shot().render.samples * share(part) >= 2 * (1 - kRounding);
+        if (may_split && fit.missed) return split_at(best_of(fit.corners_s, part), part, depth);
+        const double enough_px = kMotionMargin * shot_.shot().render.motion_tolerance_px;
+        const std::vector<double> camera_corners_s = add_camera(inside, snapshot);
+        if (may_split && snapshot.camera_error_px > enough_px) return split_at(best_of(camera_corners_s, part), part, depth);
+        const std::vector<double> light_corners_s = add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
+        if (may_split && snapshot.light_error > kLightTolerance) return split_at(best_of(light_corners_s, part), part, depth);
+        if (const double bent_px = add_bending(inside, snapshot); may_split && bent_px > kDeformationShare * enough_px)
+            return split_at(middle(part), part, depth);
+        add_rest(part, inside, snapshot);
+        snapshots_.push_back(std::move(snapshot));
+    }
+
+    static double middle(const Part& part) { return 0.5 * (part.open_s + part.close_s); }
+    /// Of the whole shutter.
+    double share(const Part& part) const { return frame_.close_s > frame_.open_s ? (part.close_s - part.open_s) / (frame_.close_s - frame_.open_s) : 1; }
+
+    /// The corner that lies nearest to the middle: a path is straight or smooth on both sides of it. The middle where there
+    /// is none with a sample's worth of time on either side: a part that gets no sample would not be seen at all, which is
+    /// worse than a path that strays.
+    double best_of(const std::vector<double>& corners_s, const Part& part) const {
+        const double sample_s = (1 - kRounding) * (frame_.close_s - frame_.open_s) / shot_.shot().render.samples;
+        std::optional<double> best;
+        const auto from_middle = [&](double time) { return std::abs(time - middle(part)); };
+        for (const double time : corners_s)
+            if (std::min(time - part.open_s, part.close_s - time) >= sample_s && (!best || from_middle(time) < from_middle(*best))) best = time;
+        return best.value_or(middle(part));
+    }
+
+    /// @return the times of its keys
+    std::vector<double> add_camera(const Part& inside, SceneSnapshot& snapshot) const {
+        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, origin_);
+        snapshot.camera_keys = std::move(camera.keys);
+        snapshot.camera_error_px = camera.error_px;
+        snapshot.camera = make_camera(shot_, 0.5 * (inside.open_s + inside.close_s));
+        snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
+        return camera.corners_s;
+    }
+
+    /// @return what the vertices of bending meshes miss; max_error_px then counts their places and vertices together
+    double add_bending(const Part& inside, SceneSnapshot& snapshot) const {
+        MotionFrames& motion = snapshot.motion;
+        const double places_px = motion.max_error_px;
+        motion.max_error_px = motion.bending_error_px;
         add_deformed(shot_, inside.open_s, inside.close_s, snapshot);
+        double vertices_px = 0;
+        int worst = -1;
+        for (std::size_t d = 0; d < snapshot.deformed.size(); ++d)
+            if (snapshot.deformed[d]->error_px > vertices_px) vertices_px = snapshot.deformed[d]->error_px, worst = static_cast<int>(d);
+        for (std::size_t i = 0; motion.max_error_px > places_px && i < snapshot.instances.size(); ++i)
+            if (snapshot.instances[i].deformed == worst) motion.worst = static_cast<std::uint32_t>(i);
+        motion.max_error_px = std::max(motion.max_error_px, places_px);
+        return vertices_px;
+    }
+
+    void add_rest(const Part& part, const Part& inside, SceneSnapshot& snapshot) const {
+        const double middle_s = 0.5 * (inside.open_s + inside.close_s);
         hide_instances(shot_, middle_s, snapshot.instances);
         snapshot.materials = shot_.bindings().materials.table(middle_s);
         snapshot.frame_number = frame_.number;
         snapshot.open_s = part.open_s;
         snapshot.close_s = part.close_s;
         set_shutter(shot_, frame_, snapshot);
-        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, origin_);
-        snapshot.camera_keys = std::move(camera.keys);
-        snapshot.camera_error_px = camera.error_px;
-        snapshot.camera = make_camera(shot_, middle_s);
-        snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
-        add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
         snapshot.environment = environment_over(shot_, inside.open_s, inside.close_s);
         snapshot.settings = settings_of(shot_.shot(), frame_.number);
         snapshot.geometry_key = key_of(snapshot);
-        snapshots_.push_back(std::move(snapshot));
     }
 
-    void add_halves(const Part& part, int depth) {
+    void split_at(double time_s, const Part& part, int depth) {
         if (depth >= kDeepestSplit) refuse_spin(shot_, frame_);
-        const double middle = 0.5 * (part.open_s + part.close_s);
-        add({part.open_s, middle, part.jump_at_open, false}, depth + 1);
-        add({middle, part.close_s, false, part.jump_at_close}, depth + 1);
+        add({part.open_s, time_s, part.jump_at_open, false}, depth + 1);
+        add({time_s, part.close_s, false, part.jump_at_close}, depth + 1);
     }
 
     const BoundShot& shot_;

@@ -25,7 +25,8 @@ struct MotionFrames {
     /// Whether linearly interpolated matrices (two keys) already meet the motion tolerance; [instance].
     std::vector<std::uint8_t> linear;
     double max_error_px = 0;                        ///< largest screen-space deviation from the true path
-    std::uint32_t worst = 0;                        ///< index of the instance that has it
+    double bending_error_px = 0;                    ///< the same of instances whose vertices bend, without their vertices
+    std::uint32_t worst = 0;                        ///< index of the instance that has max_error_px
 };
 
 /// A mesh that bends, over the part of the shutter: its vertices at evenly spaced times of [0, 1], in the normalised
@@ -103,7 +104,12 @@ struct SceneSnapshot {
 /// The times inside (begin, end), ascending, at which anything that a snapshot holds jumps: a shutter is split there.
 std::vector<double> shot_discontinuities(const BoundShot& shot, double begin_s, double end_s);
 
-/// The snapshots of one frame: one, or several where the shutter has to be split.
+/// Parts that a continuous stretch of the shutter is split into at most, so that motion frames, the camera's keys and
+/// those of lights meet their tolerances; no part gets less than one sample. Spins alone may go beyond.
+inline constexpr int kMostPartsForError = 32;
+
+/// The snapshots of one frame: one, or several where the shutter has to be split: where something jumps, turns faster than
+/// 129 motion frames follow, or strays farther than the motion tolerance.
 /// @throws InputError  where the motion cannot be represented (a zero scale, half a turn between keys)
 std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame);
 
