@@ -197,6 +197,18 @@ TEST(ShutterSplit, WhatIsMetStaysWhole) {
     EXPECT_EQ(stage.snapshots().size(), 1u);
 }
 
+TEST(ShutterSplit, WhatIsReportedCountsCornersBesideTheGrid) {
+    // One sample, so nothing is split; the corner lies a twentieth of a step after a frame, far from where fits look.
+    Stage stage = full_hd();
+    stage.shot.render.samples = 1;
+    const int node = stage.add_node("Cube");
+    stage.animate(node).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {24.05 / 128, {1, 0, 0}}, {1, {-1, 0.5, 0}}});
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_GT(parts[0].motion.max_error_px, 0.1);
+    EXPECT_LE(worst_error_px(stage, parts[0], 0, node, 12800), parts[0].motion.max_error_px + kFloats);
+}
+
 TEST(ShutterSplit, PathsAreSplitInTheirCorners) {
     // Both sides of a corner are straight: no more frames than two, and no error.
     Stage stage = full_hd();
