@@ -27,6 +27,17 @@ void collect(std::vector<Diagnostic>& problems, Step step) {
     }
 }
 
+/// Says what is wrong once, where the shot's reader took one key for two purposes: the middle of an orbit is also what
+/// the camera looks at.
+void drop_repeated(std::vector<Diagnostic>& problems) {
+    std::vector<Diagnostic> once;
+    for (Diagnostic& problem : problems) {
+        const auto same = [&](const Diagnostic& known) { return known.where == problem.where && known.found == problem.found; };
+        if (std::none_of(once.begin(), once.end(), same)) once.push_back(std::move(problem));
+    }
+    problems = std::move(once);
+}
+
 /// Every node reference of a shot but the authored camera's, which has rules of its own.
 std::vector<NodeReference> references_of(const Shot& shot) {
     std::vector<NodeReference> all;
@@ -262,6 +273,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     for (std::size_t f = 0; f < scene.files.size(); ++f) {
         scenes.push_back(bind_scene(scene, static_cast<int>(f), shot.scenes.at(f), problems));
         check_overrides(scene, static_cast<int>(f), scenes.back(), problems);
+        collect(problems, [&] { check_morph_weights(scene, static_cast<int>(f), scenes.back()); });
     }
     for (std::size_t f = 0; f < scene.files.size(); ++f) collect(problems, [&] { check_appearance(scene, f, shot.scenes.at(f)); });
     for (const NodeReference& reference : references_of(shot))
@@ -271,6 +283,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     check_integrator(shot, problems);
     check_lens(shot, problems);
     collect(problems, [&] { timing_ = with_frames(shot, longest_clip_s(scenes)); });
+    drop_repeated(problems);
     if (!problems.empty()) throw InputError(std::move(problems));
 
     sequence_ = Sequence(timing_, shot.shutter);

@@ -94,7 +94,12 @@ void add_scene(TrackList& list, const SceneSpec& scene) {
     list.add(name + ".transform", scene.transform);
     for (std::size_t i = 0; i < scene.layers.size(); ++i)
         list.add(name + ".animation." + (scene.layers.size() > 1 ? std::to_string(i) + "." : "") + "weight", scene.layers[i].weight);
-    for (const NodeOverride& node : scene.nodes) list.add(name + ".nodes." + node.name, node.transform);
+    for (const NodeOverride& node : scene.nodes) {
+        const std::string part = name + ".nodes." + node.name;
+        list.add(part, node.transform);
+        list.add(part + ".visible", node.visible);
+        for (std::size_t i = 0; i < node.weights.size(); ++i) list.add(part + ".weights[" + std::to_string(i) + "]", node.weights[i]);
+    }
     list.add(name + ".visible", scene.visible);
     for (const MaterialSpec& material : scene.materials) add_material(list, name, material);
 }

@@ -110,6 +110,10 @@ const FormRow kFormRows[] = {
     {kNumber, [](const FieldSpec& field) { return component_schema(field); }},
     {kVector2 | kSize2 | kRange, [](const FieldSpec& field) { return list_schema(component_schema(field), 2); }},
     {kVector3, [](const FieldSpec& field) { return list_schema(component_schema(field), 3); }},
+    {kNumberList,
+     [](const FieldSpec& field) {
+         return Json{{"type", "array"}, {"items", component_schema(field)}, {"minItems", 1}};
+     }},
     {kRotation, rotation_schema},
     {kChoice, words_schema},
     {kSection, [](const FieldSpec& field) { return section_schema(field.path); }},

@@ -34,6 +34,8 @@ void read_node_override(const Field& nodes, const YamlEntry& entry, SceneSpec& s
     const GivenParts given = read_transform(section, node.transform);
     node.translates = given.translate, node.rotates = given.rotate, node.scales = given.scale;
     node.visible = read_switch_track(section["visible"]);
+    node.weights = read_weight_tracks(section["weights"]);
+    if (const Field weights = section["weights"]) node.weights_where = location_of(weights.node->place);
     spec.nodes.push_back(std::move(node));
 }
 

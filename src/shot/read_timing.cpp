@@ -85,7 +85,8 @@ std::optional<std::vector<int>> read_frames(const Field& field) {
         const Diagnostic& first = error.diagnostics().front();
         const std::string text = frames_text(*field.node), prefix = fmt::format("frames \"{}\": ", text);
         const std::string found = first.found.starts_with(prefix) ? first.found.substr(prefix.size()) : first.found;
-        field.error(fmt::format("{} is {}: {}", field.name, text, found),
+        const bool blank = text.find_first_not_of(' ') == std::string::npos;
+        field.error(blank ? fmt::format("{} is empty", field.name) : fmt::format("{} is {}: {}", field.name, text, found),
                     first.expected.empty() ? "expected " + expectation(*field.spec) : first.expected);
         return std::nullopt;
     }

@@ -63,6 +63,7 @@ constexpr FormRow kFormRows[] = {
     {kInteger, integer_text},
     {kNumber, number_text},
     {kSize2, [](const FieldSpec&) -> std::string { return "[width, height], whole numbers from 1 to 65536"; }},
+    {kNumberList, [](const FieldSpec& field) { return components_text("a list of numbers such as [0, 1]", field); }},
     {kVector2, [](const FieldSpec& field) { return components_text("[width, height]", field); }},
     {kRange, [](const FieldSpec& field) { return components_text("[least, largest]", field); }},
     {kVector3, [](const FieldSpec& field) { return components_text("[x, y, z]", field); }},

@@ -36,6 +36,7 @@ enum Form : unsigned {
     kOrbit = 1u << 29,     ///< the rows below `orbit`
     kShake = 1u << 30,     ///< the rows below `shake`
     kWeights = 1u << 21,        ///< a map of names to weights, each of which may be keyed over time
+    kNumberList = 1u << 22,   ///< a list of numbers of the quantity, one or more
     kTrack = 1u << 31,     ///< each of the forms may be keyed over time
 };
 

@@ -68,6 +68,8 @@ struct NodeOverride {
     TransformTrack transform;  ///< parent_from_node; each part counts only where it is given
     bool translates = false, rotates = false, scales = false;
     std::optional<SwitchTrack> visible;  ///< of the node and all below it; replaces what the file and its clips say
+    std::vector<Track<double>> weights;  ///< [morph target] of its mesh; empty: those of the file and its clips
+    SourceLocation weights_where;
     bool operator==(const NodeOverride&) const = default;
 };
 

@@ -73,7 +73,7 @@ private:
         (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.emissive_strength, m.alpha, m.alpha_cutoff,
                 m.normal_scale);
     }
-    void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales, n.visible); }
+    void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales, n.visible, n.weights); }
     void add(const NamedAt& named) { add(named.name); }
     void add(const CameraSpec& c) {
         (*this)(c.gltf, c.position, c.around, c.look_at, c.up, c.up_given, c.dolly_m, c.shake, c.focal_length_mm, c.vertical_fov_rad, c.sensor_mm, c.fit,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "anim/track.h"
 #include "shot/section.h"
@@ -18,6 +19,9 @@ std::optional<Track<glm::dvec3>> read_direction_track(const Field& field);
 std::optional<Track<glm::dvec3>> read_scale_track(const Field& field);
 /// true, false, or keys of them, which only jump.
 std::optional<SwitchTrack> read_switch_track(const Field& field);
+/// One weight for each morph target, or a track of such lists: a track for each target, all with the same keys. Empty where
+/// the field is absent or wrong.
+std::vector<Track<double>> read_weight_tracks(const Field& field);
 /// [x, y, z] degrees, a quaternion, `{ axis, angle }`, or a track of the first two.
 std::optional<RotationTrack> read_rotation_track(const Field& field);
 /// A point, a track of points, `{ path: ... }` or `{ orbit: ... }`.

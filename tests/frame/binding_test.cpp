@@ -43,6 +43,15 @@ TEST(Binding, SaysWhatAReferenceMightHaveMeant) {
               "  did you mean 'stage'?");
 }
 
+TEST(Binding, SaysOnceWhatTheMiddleOfAnOrbitMightHaveMeant) {
+    Stage stage;
+    stage.shot.camera.around = reference("stag/Visor");
+    stage.shot.camera.look_at = reference("stag/Visor");  // as the reader has it where look_at is not given
+    EXPECT_EQ(message_of([&] { stage.bind(); }),
+              "stage.yaml:11:12: error: 'stag/Visor' names no scene\n"
+              "  did you mean 'stage'?");
+}
+
 TEST(Binding, ListsTheNodesOfAnAmbiguousName) {
     Stage stage;
     stage.add_node("Wheel", stage.add_node("Left"));

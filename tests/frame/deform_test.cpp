@@ -188,6 +188,55 @@ TEST(Deformation, TellsWhereVerticesWereAFrameAgo) {
     EXPECT_LT(glm::distance(world, glm::dvec3(0, 1, 0)), 1e-6);
 }
 
+NodeOverride weights_of(std::string node, std::vector<Track<double>> weights) {
+    NodeOverride result;
+    result.name = std::move(node);
+    result.weights = std::move(weights);
+    result.weights_where = {"stage.yaml", 7, 11};
+    return result;
+}
+
+TEST(Deformation, WeightsOfTheShotWinOverClipsAndBlur) {
+    DropStage stage;
+    stage.animate(stage.drop).weights = {track<double>({{0, 1}, {1, 0}})};
+    stage.shot.scenes[0].nodes = {weights_of("drop", {track<double>({{0, 0}, {0.5, 0.25}, {1, 1}})})};
+    const SceneSnapshot snapshot = stage.snapshot();
+    ASSERT_EQ(snapshot.deformed.size(), 1u);
+    EXPECT_EQ(snapshot.deformed[0]->key_count, 3u);  // a key of the vertices for each of the weights'
+    EXPECT_LT(glm::distance(world_of(snapshot, 2, 0.25), glm::dvec3(0, 1.25, 0)), 1e-6);
+    EXPECT_LT(glm::distance(world_of(snapshot, 2, 0.75), glm::dvec3(0, 2.25, 0)), 1e-6);
+}
+
+TEST(Deformation, ConstantWeightsOfTheShotReplaceTheFiles) {
+    DropStage stage;
+    stage.shot.scenes[0].nodes = {weights_of("drop", {Track<double>(0.5)})};
+    const SceneSnapshot snapshot = stage.snapshot();
+    ASSERT_EQ(snapshot.deformed.size(), 1u);
+    EXPECT_EQ(snapshot.deformed[0]->key_count, 1u);
+    EXPECT_LT(glm::distance(world_of(snapshot, 2, 0), glm::dvec3(0, 2, 0)), 1e-6);
+    EXPECT_EQ(stage.bind().bindings().morphs.weights(stage.drop, 3, 5), std::vector<double>{0.5});
+}
+
+TEST(Deformation, StepsOfTheShotsWeightsSplitTheShutter) {
+    DropStage stage;
+    stage.shot.scenes[0].nodes = {weights_of("drop", {track<double>({{0, 0}, {0.25, 1}}, Interpolation::step)})};
+    const auto parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_DOUBLE_EQ(parts[0].weight, 0.25);
+    EXPECT_LT(glm::distance(world_of(parts[1], 2, 0), glm::dvec3(0, 3, 0)), 1e-6);
+}
+
+TEST(Deformation, RefusesWeightsThatDoNotFitTheMesh) {
+    DropStage stage;
+    stage.add_node("stone");
+    stage.shot.scenes[0].nodes = {weights_of("stone", {Track<double>(0.5)}), weights_of("drop", {Track<double>(0.5), Track<double>(1.0)})};
+    EXPECT_EQ(test::message_of([&] { stage.bind(); }),
+              "stage.yaml:7:11: error: weights are given for node 'stage/stone', which has no morph targets\n"
+              "  expected a node whose mesh has some; remove the key\n"
+              "stage.yaml:7:11: error: the weights of node 'stage/drop' are 2 numbers\n"
+              "  expected 1, one for each morph target of its mesh");
+}
+
 TEST(Deformation, RefusesWhatIsNotFinite) {
     DropStage stage;
     stage.node(stage.drop).weights = {INFINITY};

@@ -75,6 +75,53 @@ TEST_F(Animation, TakesNodesAndWhatToHide) {
     EXPECT_EQ(spec.hide[1].name, "Rig/Helper");
 }
 
+TEST_F(Animation, TakesMorphWeightsOfNodes) {
+    const SceneSpec spec = parse_scene(
+        "{ gltf: a.glb, nodes: { A: { weights: [0.5, -1] }, B: { weights: { keys: { 0 s: [0, 1], 2 s: { value: [4, 0], ease: in-out }, 3 s: [1, 1] }, after: repeat } }, "
+        "C: { weights: { keys: { 0 s: { value: [1, 2], out_tangent: [3, 4] }, 1 s: { value: [0, 0], in_tangent: [5, 6] } }, interpolate: cubic } }, D: {} } }").scenes[0];
+    EXPECT_EQ(spec.nodes.at(0).weights, (std::vector<Track<double>>{0.5, -1.0}));
+    const std::vector<Track<double>>& keyed = spec.nodes.at(1).weights;
+    ASSERT_EQ(keyed.size(), 2u);
+    EXPECT_EQ(evaluate(keyed[0], 1), 2);
+    EXPECT_EQ(evaluate(keyed[1], 1), 0.5);
+    EXPECT_EQ(keyed[1].after, Extrapolation::repeat);
+    EXPECT_TRUE(keyed[0].keys.at(1).ease && keyed[1].keys.at(1).ease);
+    const std::vector<Track<double>>& cubic = spec.nodes.at(2).weights;
+    ASSERT_EQ(cubic.size(), 2u);
+    EXPECT_EQ(cubic[1].interpolation, Interpolation::cubic);
+    EXPECT_EQ(cubic[1].keys.at(0).out_tangent, 4);
+    EXPECT_EQ(cubic[0].keys.at(1).in_tangent, 5);
+    EXPECT_TRUE(spec.nodes.at(3).weights.empty());
+}
+
+TEST_F(Animation, SaysWhatIsWrongWithMorphWeights) {
+    const auto errors = [](const std::string& rest) { return errors_of("kadr: 1\nscenes:\n  - gltf: a.glb\n    nodes: { N: { weights: " + rest + " } }\ncamera: {}\n"); };
+    EXPECT_EQ(errors("0.5"),
+              "shot.yaml:4:28: error: scenes.0.nodes.N.weights is 0.5\n"
+              "        nodes: { N: { weights: 0.5 } }\n"
+              "                               ^~~\n"
+              "  expected a list of numbers such as [0, 1]");
+    EXPECT_EQ(errors("[0, x]"),
+              "shot.yaml:4:32: error: scenes.0.nodes.N.weights[1] is 'x'\n"
+              "        nodes: { N: { weights: [0, x] } }\n"
+              "                                   ^\n"
+              "  expected a list of numbers such as [0, 1]");
+    EXPECT_EQ(errors("{ keys: { 0 s: [0, 1], 1 s: [0], 2 s: { value: [1, 2, 3], ease: in } } }"),
+              "shot.yaml:4:56: error: scenes.0.nodes.N.weights.keys.1 s has 1 numbers\n"
+              "        nodes: { N: { weights: { keys: { 0 s: [0, 1], 1 s: [0], 2 s: { value: [1, 2, 3], ease: in } } } } }\n"
+              "                                                           ^~~\n"
+              "  expected 2, as at the first key: one for each morph target\n"
+              "shot.yaml:4:75: error: scenes.0.nodes.N.weights.keys.2 s has 3 numbers\n"
+              "        nodes: { N: { weights: { keys: { 0 s: [0, 1], 1 s: [0], 2 s: { value: [1, 2, 3], ease: in } } } } }\n"
+              "                                                                              ^~~~~~~~~\n"
+              "  expected 2, as at the first key: one for each morph target");
+    EXPECT_EQ(errors("{ keys: { 0 s: { value: [0, 1], out_tangent: [1] }, 1 s: [1, 1] }, interpolate: cubic }"),
+              "shot.yaml:4:73: error: scenes.0.nodes.N.weights.keys.0 s.out_tangent has 1 numbers\n"
+              "        nodes: { N: { weights: { keys: { 0 s: { value: [0, 1], out_tangent: [1] }, 1 s: [1, 1] }, interpolate: cubic } } }\n"
+              "                                                                            ^~~\n"
+              "  expected 2, as in the key's value: one for each morph target");
+}
+
 Hash hash_of(const Shot& shot) {
     Hasher hasher;
     hash_shot(shot, hasher);
@@ -86,7 +133,7 @@ TEST_F(Animation, ChangesWhatAFrameIsMadeFrom) {
     std::vector<Hash> seen{base};
     for (const char* rest : {"animation: { at: 1 }", "animation: { in: 1 }", "animation: { out: 1 }", "animation: { loop: repeat }", "animation: { weight: 0.5 }",
                              "animation: [ {}, {} ]", "animation: { clip: { a: 1 } }", "nodes: { N: {} }", "nodes: { N: { scale: 1 } }",
-                             "nodes: { N: { translate: [0, 0, 0] } }", "nodes: { M: { rotate: [0, 0, 0] } }", "hide: [ N ]"}) {
+                             "nodes: { N: { translate: [0, 0, 0] } }", "nodes: { M: { rotate: [0, 0, 0] } }", "nodes: { N: { weights: [1] } }", "nodes: { N: { weights: [1, 0] } }", "hide: [ N ]"}) {
         const Hash hash = hash_of(parse_scene(std::string("{ gltf: a.glb, ") + rest + " }"));
         EXPECT_THAT(seen, ::testing::Not(::testing::Contains(hash))) << rest;
         seen.push_back(hash);
@@ -147,12 +194,12 @@ TEST_F(Animation, SaysWhatIsWrong) {
               "shot.yaml:4:23: error: unknown key 'rotation' in scenes.0.nodes.Hinge\n"
               "        nodes: { Hinge: { rotation: [0, 0, 0] } }\n"
               "                          ^~~~~~~~\n"
-              "  expected one of translate, rotate, scale, visible");
+              "  expected one of translate, rotate, scale, visible, weights");
     EXPECT_EQ(errors("nodes: [ Hinge ]"),
               "shot.yaml:4:12: error: scenes.0.nodes is a list of 1\n"
               "        nodes: [ Hinge ]\n"
               "               ^~~~~~~~~\n"
-              "  expected a map of names to maps of translate, rotate, scale, visible");
+              "  expected a map of names to maps of translate, rotate, scale, visible, weights");
     EXPECT_EQ(errors("hide: Collision"),
               "shot.yaml:4:11: error: scenes.0.hide is 'Collision'\n"
               "        hide: Collision\n"

@@ -208,6 +208,11 @@ shot.yaml:4:32: error: shutter.angle and shutter.close exclude each other
     timing: { fps: 24000/0 }
                    ^~~~~~~
   expected frames a second, such as 24, 23.976 or 24000/1001)"},
+        {std::string(kBase) + R"(timing: { frames: "" })",
+         R"(shot.yaml:4:19: error: timing.frames is empty
+    timing: { frames: "" }
+                      ^~
+  expected frames as "0-95", "0-95x2" (every second one) or "5,9,12-20")"},
         {std::string(kBase) + R"(timing: { frames: {} })",
          R"(shot.yaml:4:19: error: timing.frames is an empty map
     timing: { frames: {} }
