@@ -109,6 +109,11 @@ private:
     }
 };
 
+/// The seed of one half of a film's samples: the same numbers as ever for the first, independent ones for the second.
+SHARED_FN unsigned seed_of_half(unsigned seed, int half) {
+    return half == 0 ? seed : mix_bits(seed ^ 0x68e31da4u);
+}
+
 /// @param sample  index of the sample in its pixel; consecutive ones fill the square evenly
 template <class F>
 SHARED_FN Sampler<F> make_sampler(Int<F> x, Int<F> y, UInt<F> sample, unsigned seed) {

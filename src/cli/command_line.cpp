@@ -28,7 +28,7 @@ struct RawOptions {
     int frame = 0, threads = 0, samples = 0;
     std::string time, frames, sheet, from;
     bool onion = false, path = false;
-    std::string limits, view, fps;
+    std::string limits, view, fps, time_budget_shot;
 };
 
 int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
@@ -114,6 +114,24 @@ Rational parse_fps(const std::string& text) {
     return Rational(numerator, at == std::string::npos ? 1 : parse_number(text.substr(at + 1), "--fps", expected));
 }
 
+/// "90s", "10m", "1.5 h"; a number alone is seconds.
+double parse_duration(const std::string& text, const std::string& option) {
+    static const std::map<std::string, double> kUnits{{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
+    std::size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    std::string unit = text.substr(used);
+    unit.erase(0, std::min(unit.size(), unit.find_first_not_of(' ')));
+    const auto found = kUnits.find(unit);
+    if (used == 0 || found == kUnits.end() || !(value > 0 && value < 1e7))
+        throw InputError(fmt::format("{} is '{}'", option, text), fmt::format("expected a time above zero, as in {} 90s, 10m or 2h", option));
+    return value * found->second;
+}
+
 /// The parser and where its values go.
 class Parser {
 public:
@@ -188,7 +206,7 @@ void Parser::add_device(CLI::App* app) {
 
 void Parser::add_overrides(CLI::App* app) {
     add_set(app);
-    app->add_option("--samples", raw_.samples, "samples a pixel")->check(CLI::PositiveNumber);
+    app->add_option("--samples", raw_.samples, "samples a pixel; the most, with --max-error or a time budget")->check(CLI::PositiveNumber);
     app->add_option("--size", raw_.size, "WIDTHxHEIGHT in pixels");
     add_device(app);
 }
@@ -204,6 +222,10 @@ void Parser::add_render() {
     app->add_option("--default-video", options.default_video,
                     "video file where neither the shot nor --video names one; {name} is the shot's name");
     add_overrides(app);
+    app->add_option("--max-error", options.overrides.max_error,
+                    "sample each pixel until its standard error on the display (0 to 1) is below this: 0.01");
+    app->add_option("--time-budget", options.overrides.time_budget, "wall time for a frame: 20s");
+    app->add_option("--time-budget-shot", raw_.time_budget_shot, "wall time for all frames, dealt by difficulty: 90s, 10m, 2h");
     app->add_flag("--overwrite", options.overwrite, "render frames that are complete, too");
     app->add_flag("--stats", invocation_.stats, "print what the device counted for each frame");
     app->add_flag("--json", invocation_.json, "one JSON object a line");
@@ -403,6 +425,7 @@ void Parser::fill_compare() {
 
 void Parser::fill_in() {
     fill_overrides(invocation_.render);
+    if (!raw_.time_budget_shot.empty()) invocation_.render.time_budget_s = parse_duration(raw_.time_budget_shot, "--time-budget-shot");
     fill_preview();
     fill_compare();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());

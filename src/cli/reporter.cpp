@@ -44,19 +44,35 @@ std::string motion_text(const MotionReport& motion) {
                        motion.frames == 1 ? "" : "s", motion.parts, motion.parts == 1 ? "" : "s");
 }
 
+/// "32 to 256 (mean 61.2), stopped by max_error; relMSE 0.0031 (0.0029 to 0.0033), 0.009 on the display".
+std::string sampling_text(const SamplingReport& s) {
+    std::string text = s.least == s.most ? fmt::format("{}", s.least) : fmt::format("{} to {} (mean {:.4g})", s.least, s.most, s.mean);
+    text += fmt::format(", stopped by {}", name_of(s.stopped_by));
+    if (s.error.known)
+        text += fmt::format("; relMSE {:.3g} ({:.3g} to {:.3g}), error on the display {:.3g}", s.error.relmse, s.error.relmse_low, s.error.relmse_high, s.display_error);
+    return text;
+}
+
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
     return fmt::format("  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
-                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}",
+                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}\n  samples a pixel {}",
                        device.rays, device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
                        device.instances, device.moving_instances, device.flattened_triangles, device.structures.built,
-                       device.structures.updated, device.structures.kept, motion_text(report.motion));
+                       device.structures.updated, device.structures.kept, motion_text(report.motion), sampling_text(report.sampling));
 }
 
 /// "3 reused", "3 reused, 40 the same as another".
 std::string shortcuts_text(const RenderSummary& summary) {
     std::string text = fmt::format("{} reused", summary.reused);
     if (summary.same > 0) text += fmt::format(", {} the same as another", summary.same);
+    return text;
+}
+
+/// "max_error 40, at_most 8".
+std::string stops_text(const RenderSummary& summary) {
+    std::string text;
+    for (const auto& [reason, frames] : summary.stopped_by) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", reason, frames);
     return text;
 }
 
@@ -68,6 +84,7 @@ std::string summary_text(const RenderSummary& summary) {
                                    times.trace, times.write, times.encode);
     text += fmt::format("{:.2f} million samples/s, peak memory {}\n", summary.samples_per_s / 1e6,
                         readable_bytes(summary.peak_memory_bytes));
+    if (summary.relmse) text += fmt::format("estimated relMSE {:.3g}; frames stopped by {}\n", *summary.relmse, stops_text(summary));
     if (summary.shots > 0) text += fmt::format("reel: {} shots, {} frames, {:.2f} s\n", summary.shots, summary.reel_frames, summary.reel_s);
     text += fmt::format("device: {}{}\n", summary.device, summary.device_why.empty() ? "" : "; " + summary.device_why);
     if (!summary.video.empty()) text += fmt::format("video: {}\n", summary.video.string());
@@ -178,6 +195,16 @@ Json statistics_json(const DeviceStatistics& device) {
              {{"built", device.structures.built}, {"updated", device.structures.updated}, {"kept", device.structures.kept}}}};
 }
 
+Json sampling_json(const SamplingReport& s) {
+    Json json{{"least", s.least}, {"most", s.most}, {"mean", s.mean}, {"stopped_by", name_of(s.stopped_by)}};
+    if (s.error.known) {
+        json["relmse"] = s.error.relmse;
+        json["relmse_95"] = {s.error.relmse_low, s.error.relmse_high};
+        json["display_error"] = s.display_error;
+    }
+    return json;
+}
+
 Json frame_json(const FrameReport& report) {
     Json files = Json::array();
     for (const auto& file : report.files) files.push_back(file.string());
@@ -190,7 +217,7 @@ Json frame_json(const FrameReport& report) {
             {"motion_error_px", report.motion_error_px},
             {"motion", {{"instances_px", report.motion.instances_px}, {"vertices_px", report.motion.vertices_px}, {"camera_px", report.motion.camera_px},
                         {"frames", report.motion.frames}, {"parts", report.motion.parts}, {"met", report.motion.met()}}},
-            {"files", files}};
+            {"sampling", sampling_json(report.sampling)}, {"files", files}};
 }
 
 Json summary_json(const RenderSummary& summary) {
@@ -198,6 +225,7 @@ Json summary_json(const RenderSummary& summary) {
     return {{"event", "summary"}, {"frames", summary.frames}, {"reused", summary.reused}, {"same", summary.same},
             {"seconds", {{"load", times.load}, {"scene", times.scene}, {"trace", times.trace}, {"write", times.write},
                          {"encode", times.encode}, {"total", times.total}}},
+            {"relmse", summary.relmse ? Json(*summary.relmse) : Json()}, {"stopped_by", summary.stopped_by},
             {"pixel_samples", summary.pixel_samples}, {"samples_per_s", summary.samples_per_s},
             {"peak_memory_bytes", summary.peak_memory_bytes}, {"device", summary.device},
             {"device_why", summary.device_why}, {"video", summary.video.string()}};

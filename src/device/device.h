@@ -12,9 +12,11 @@
 
 namespace kadr {
 
-/// Samples [first_sample, first_sample + sample_count) of every pixel.
+/// Samples [first_sample, first_sample + sample_count) of one half of the film, of every active pixel.
 struct Pass {
     int first_sample = 0, sample_count = 1;
+    int half = 0;                                   ///< of the film; halves are scrambled independently of each other
+    const std::uint8_t* active = nullptr;           ///< [y][x], 0: this pixel has samples enough; null: all are active
     /// Share of the frame's samples that this part of the shutter was dealt: what each of them counts for is the light
     /// of the part over this share. 0: the part's own weight.
     double dealt_share = 0;

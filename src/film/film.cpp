@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "film/error_estimate.h"
+
 namespace kadr {
 namespace {
 
@@ -65,14 +67,6 @@ std::vector<Channel> surface_channels(const FilmLayers& layers) {
     return channels;
 }
 
-/// Standard error of the pixel's luminance: sqrt(variance of the group means / number of groups).
-float standard_error(const Film::Groups& groups) {
-    if (groups.count < 2) return 0;
-    const double n = groups.count, mean = groups.sum / n;
-    const double variance = std::max(0.0, groups.sum_of_squares / n - mean * mean) * n / (n - 1);
-    return finite(static_cast<float>(std::sqrt(variance / n)));
-}
-
 std::vector<std::string> channel_names(const std::vector<Channel>& surface, const FilmLayers& layers) {
     std::vector<std::string> names{"R", "G", "B", "A"};
     for (const Channel& channel : surface) names.emplace_back(channel.name);
@@ -85,33 +79,49 @@ std::vector<std::string> channel_names(const std::vector<Channel>& surface, cons
 
 Film::Film(int width, int height, FilmLayers layers) : width_(width), height_(height), layers_(layers) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    beauty_.resize(count);
-    samples_.resize(count);
+    for (int half = 0; half < kHalves; ++half) {
+        beauty_[half].resize(count);
+        samples_[half].resize(count);
+    }
     if (layers.any_surface()) surface_.resize(count);
-    if (layers.error) groups_.resize(count);
 }
 
 void Film::clear(bool weighted) {
-    weights_.assign(weighted ? beauty_.size() : 0, 0.0f);
-    std::fill(beauty_.begin(), beauty_.end(), Beauty{});
-    std::fill(samples_.begin(), samples_.end(), 0u);
+    weighted_ = weighted;
+    for (int half = 0; half < kHalves; ++half) {
+        weights_[half].assign(weighted ? beauty_[half].size() : 0, 0.0f);
+        std::fill(beauty_[half].begin(), beauty_[half].end(), Beauty{});
+        std::fill(samples_[half].begin(), samples_[half].end(), 0u);
+    }
     std::fill(surface_.begin(), surface_.end(), Surface{});
-    std::fill(groups_.begin(), groups_.end(), Groups{});
+}
+
+float Film::divisor(int x, int y, int half) const {
+    const std::size_t i = index(x, y);
+    return weighted_ ? weights_[half][i] : static_cast<float>(samples_[half][i]);
+}
+
+Film::Color Film::mean(int x, int y, int half) const {
+    const Beauty& sum = beauty_[half][index(x, y)];
+    const float n = divisor(x, y, half);
+    return {sum.r / n, sum.g / n, sum.b / n};
 }
 
 Image Film::develop() const {
     const std::vector<Channel> channels = surface_channels(layers_);
     Image image{width_, height_, channel_names(channels, layers_), {}};
-    image.pixels.resize(beauty_.size() * image.channels.size());
+    image.pixels.resize(beauty_[0].size() * image.channels.size());
+    const std::vector<float> errors = layers_.error ? standard_errors(*this) : std::vector<float>();
     float* out = image.pixels.data();
-    for (std::size_t i = 0; i < beauty_.size(); ++i) {
-        const float samples = static_cast<float>(samples_[i]), weight = weighted() ? weights_[i] : samples;
-        const Beauty& beauty = beauty_[i];
-        for (const float sum : {beauty.r, beauty.g, beauty.b}) *out++ = over_samples(sum, weight);
-        *out++ = std::clamp(over_samples(beauty.alpha, weight), 0.0f, 1.0f);
+    for (std::size_t i = 0; i < beauty_[0].size(); ++i) {
+        const float samples = static_cast<float>(samples_[0][i] + samples_[1][i]);
+        const float weight = weighted_ ? weights_[0][i] + weights_[1][i] : samples;
+        const Beauty &a = beauty_[0][i], &b = beauty_[1][i];
+        for (const float sum : {a.r + b.r, a.g + b.g, a.b + b.b}) *out++ = over_samples(sum, weight);
+        *out++ = std::clamp(over_samples(a.alpha + b.alpha, weight), 0.0f, 1.0f);
         for (const Channel& channel : channels) *out++ = channel.value(surface_[i], weight);
         if (layers_.samples) *out++ = samples;
-        if (layers_.error) *out++ = standard_error(groups_[i]);
+        if (layers_.error) *out++ = finite(errors[i]);
     }
     return image;
 }

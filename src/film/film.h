@@ -23,8 +23,13 @@ struct FilmLayers {
 
 /// Sums over the samples of every pixel. Pixels are owned by one tile at a time and summed in sample order, so the
 /// result does not depend on threads.
+///
+/// The samples come in two halves that are scrambled independently of each other: how far the halves differ is what is
+/// known of the noise (see error_estimate.h); together they are the picture.
 class Film {
 public:
+    static constexpr int kHalves = 2;
+
     Film(int width, int height, FilmLayers layers);
     /// @param weighted  samples count for different amounts of light (a split or a rolling shutter): see weight()
     void clear(bool weighted = false);
@@ -38,32 +43,36 @@ public:
     /// frame, x right, y down) over the samples that hit a surface, whose number is depth_weight.
     struct Surface { float albedo[3] = {}, normal[3] = {}; float depth = 0; float depth_weight = 0; float motion[2] = {}; };
 
-    Beauty& beauty(int x, int y) { return beauty_[index(x, y)]; }
-    std::uint32_t& samples(int x, int y) { return samples_[index(x, y)]; }
-    bool weighted() const { return !weights_.empty(); }
+    Beauty& beauty(int x, int y, int half = 0) { return beauty_[half][index(x, y)]; }
+    const Beauty& beauty(int x, int y, int half = 0) const { return beauty_[half][index(x, y)]; }
+    std::uint32_t& samples(int x, int y, int half = 0) { return samples_[half][index(x, y)]; }
+    bool weighted() const { return weighted_; }
     /// Sum of the samples' shares of the light over the shutter, about 1 each; what sums are divided by instead of the
     /// number of samples. Only when weighted().
-    float& weight(int x, int y) { return weights_[index(x, y)]; }
+    float& weight(int x, int y, int half = 0) { return weights_[half][index(x, y)]; }
     Surface& surface(int x, int y) { return surface_[index(x, y)]; }     ///< only when layers().any_surface()
-    /// For the error layer: sum and sum of squares of the mean luminance of equal groups of samples (a group may be one
-    /// sample), in double.
-    struct Groups { double sum = 0, sum_of_squares = 0; std::uint32_t count = 0; };
-    Groups& groups(int x, int y) { return groups_[index(x, y)]; }        ///< only when layers().error
+
+    std::uint32_t samples_of_both(int x, int y) const { return samples_[0][index(x, y)] + samples_[1][index(x, y)]; }
+    /// What sums of a half are divided by: its number of samples, or their shares of the light.
+    float divisor(int x, int y, int half) const;
+    /// Mean R, G and B of a half. Only where its divisor is above zero; not finite where the sums overflowed.
+    struct Color { float r, g, b; };
+    Color mean(int x, int y, int half) const;
 
     /// Linear radiance (premultiplied alpha) and the layers, sums over counts or weights: R G B A, albedo.R/G/B, normal.X/Y/Z (unit,
     /// or zero), depth.Z (+infinity where nothing was hit), motion.X/Y, samples.N, error.Y (standard error of the
-    /// luminance). Holds no NaN, and no infinity but that of the depth.
+    /// luminance, over the neighbourhood). Holds no NaN, and no infinity but that of the depth.
     Image develop() const;
 
 private:
     std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
     int width_, height_;
     FilmLayers layers_;
-    std::vector<Beauty> beauty_;
-    std::vector<std::uint32_t> samples_;
-    std::vector<float> weights_;
+    bool weighted_ = false;
+    std::vector<Beauty> beauty_[kHalves];
+    std::vector<std::uint32_t> samples_[kHalves];
+    std::vector<float> weights_[kHalves];
     std::vector<Surface> surface_;
-    std::vector<Groups> groups_;
 };
 
 }  // namespace kadr

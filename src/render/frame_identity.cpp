@@ -49,6 +49,19 @@ std::string frame_hash(const std::string& shot, const FrameTime& frame) {
 /// into a frame's metadata.
 std::string device_kind(const std::string& name) { return name.substr(0, name.find(' ')); }
 
+void add_sampling(Metadata& metadata, const SamplingReport& sampling) {
+    metadata["samples_least"] = std::to_string(sampling.least);
+    metadata["samples_most"] = std::to_string(sampling.most);
+    metadata["samples_mean"] = fmt::format("{:.4g}", sampling.mean);
+    metadata["stopped_by"] = name_of(sampling.stopped_by);
+    if (!sampling.error.known) return;
+    metadata["error_relmse"] = fmt::format("{:.4g}", sampling.error.relmse);
+    metadata["error_relmse_95"] = fmt::format("{:.4g} to {:.4g}", sampling.error.relmse_low, sampling.error.relmse_high);
+    metadata["error_display"] = fmt::format("{:.4g}", sampling.display_error);
+}
+
+const char* name_of(Integrator integrator) { return integrator == Integrator::direct ? "direct" : "path"; }
+
 }  // namespace
 
 ShotIdentity::ShotIdentity(const LoadedShot& shot, int metered_frame)
@@ -66,13 +79,24 @@ bool is_linear_file(const std::filesystem::path& path) {
 }
 
 Metadata shot_metadata(const Shot& shot, const std::string& device_name) {
-    return {
+    const RenderSpec& render = shot.render;
+    Metadata metadata{
         {"shot", shot.name},
-        {"samples", std::to_string(shot.render.samples)},
-        {"seed", std::to_string(shot.render.seed)},
+        {"samples", std::to_string(render.samples)},
+        {"seed", std::to_string(render.seed)},
+        {"integrator", name_of(render.integrator)},
+        {"bounces", fmt::format("{} (diffuse {}, glossy {}, transmission {})", render.bounces.total, render.bounces.diffuse,
+                                render.bounces.glossy, render.bounces.transmission)},
+        {"motion_tolerance_px", format_number(render.motion_tolerance_px)},
         {"version", kVersion},
         {"device", device_kind(device_name)},
     };
+    if (render.clamp_direct) metadata["clamp_direct"] = format_number(*render.clamp_direct);
+    if (render.clamp_indirect) metadata["clamp_indirect"] = format_number(*render.clamp_indirect);
+    if (render.max_error) metadata["max_error"] = format_number(*render.max_error);
+    if (render.max_error || render.time_budget_s) metadata["samples_at_least"] = std::to_string(render.at_least);
+    if (render.time_budget_s) metadata["time_budget_s"] = format_number(*render.time_budget_s);
+    return metadata;
 }
 
 Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
@@ -89,6 +113,7 @@ Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedF
     metadata["motion_tolerance_met"] = frame.motion.met() ? "yes" : "no";
     metadata["light_error"] = fmt::format("{:.4g}", frame.light_error);
     if (shot.view.exposure_keys) metadata["exposure_stops"] = format_number(view_at(shot.view, time.time_s()).exposure_stops);
+    add_sampling(metadata, frame.sampling);
     metadata["dropped_samples"] = std::to_string(frame.statistics.dropped_samples);
     metadata["seconds"] = fmt::format("{:.3f}", frame.seconds);
     return metadata;

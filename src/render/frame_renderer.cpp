@@ -1,6 +1,9 @@
 #include "render/frame_renderer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "output/view.h"
 #include "render/loaded_shot.h"
@@ -34,6 +37,12 @@ void expose(Image& image, double factor) {
     for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size())
         for (std::size_t c = 0; c < kColors; ++c) image.pixels[i + c] *= static_cast<float>(factor);
 }
+
+// Ten days: a budget that is there, but not known before the first round.
+constexpr double kUnlimitedUntilMeasured_s = 864000;
+
+/// Time that a frame takes to reach a relative mean square error of one: to reach another, divide by it.
+double difficulty_of(const Film& film, double scale, double seconds) { return estimate_error(film, scale).relmse * seconds; }
 
 void stop_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
@@ -75,45 +84,107 @@ Film& FrameRenderer::cleared_film(const ImageSpec& image, const FilmLayers& laye
     return *film_;
 }
 
-RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
-                                    const std::function<void(double)>& progress) {
+/// The rounds of samples of one frame.
+class FrameRenderer::Rounds {
+public:
+    Rounds(Device& device, Film& film, const std::vector<SceneSnapshot>& parts, RenderedFrame& frame)
+        : device_(device), film_(film), parts_(parts), weights_(weights_of(parts)), frame_(frame) {}
+
+    /// Deals the samples of a round to the parts of the shutter, and those of each part to the halves of the film: both
+    /// halves see all parts, as far as there are two samples for them.
+    void render(int count, const std::uint8_t* active, bool only_sample, const std::function<void(double)>& progress) {
+        const std::vector<SampleRange> ranges = deal_samples(weights_, count);
+        int odd = 0;
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            if (ranges[i].count == 0) continue;
+            set_part(i);
+            const int larger = (ranges[i].count + 1) / 2, smaller = ranges[i].count - larger;
+            const int counts[Film::kHalves] = {odd == 0 ? larger : smaller, odd == 0 ? smaller : larger};
+            odd ^= ranges[i].count % 2;
+            int done = ranges[i].first;
+            for (int half = 0; half < Film::kHalves; ++half) {
+                if (counts[half] == 0) continue;
+                Pass pass;
+                pass.half = half;
+                pass.active = active;
+                pass.first_sample = first_[half];
+                pass.sample_count = counts[half];
+                pass.total_samples = only_sample ? 1 : std::max(count, 2);
+                pass.dealt_share = static_cast<double>(ranges[i].count) / count;
+                pass.cancel = &interrupt_requested();
+                if (progress)
+                    pass.progress = [&, done, n = counts[half]](double fraction) { progress((done + fraction * n) / count); };
+                device_.render(pass, film_);
+                first_[half] += counts[half];
+                done += counts[half];
+                stop_if_interrupted();
+            }
+        }
+    }
+
+    /// Adds up what the device counted since the last part was set. Call once more after the last round.
+    void gather() {
+        if (part_) add(frame_.statistics, device_.statistics());
+        part_.reset();
+    }
+
+private:
+    void set_part(std::size_t i) {
+        if (part_ == i) return;
+        gather();
+        device_.set_frame(parts_[i]);
+        part_ = i;
+        frame_.light_error = std::max(frame_.light_error, parts_[i].light_error);
+    }
+
+    Device& device_;
+    Film& film_;
+    const std::vector<SceneSnapshot>& parts_;
+    const std::vector<double> weights_;
+    RenderedFrame& frame_;
+    std::optional<std::size_t> part_;
+    int first_[Film::kHalves] = {0, 0};
+};
+
+FrameRenderer::FrameRenderer(Device& device, std::function<double()> clock) : device_(&device), clock_(std::move(clock)) {
+    if (!clock_) clock_ = [watch = Stopwatch()] { return watch.seconds(); };
+}
+
+RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request) {
     stop_if_interrupted();
     const Stopwatch watch;
-    RenderedFrame frame = render(shot, make_snapshots(shot, time), layers, progress);
+    RenderedFrame frame = render(shot, make_snapshots(shot, time), request);
     frame.time_s = time.time_s();
     frame.seconds = watch.seconds();
     return frame;
 }
 
-RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FilmLayers& layers,
-                                    const std::function<void(double)>& progress) {
+RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FrameRequest& request) {
     stop_if_interrupted();
     const Stopwatch watch;
     RenderedFrame frame;
     frame.motion = motion_report(shot, parts);
-    const int total = shot.shot().render.samples;
-    const std::vector<SampleRange> ranges = deal_samples(weights_of(parts), total);
-    Film& film = cleared_film(shot.shot().image, layers, needs_weights(parts, ranges, total));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (ranges[i].count == 0) continue;
-        device_->set_frame(parts[i]);
-        Pass pass;
-        pass.first_sample = ranges[i].first;
-        pass.sample_count = ranges[i].count;
-        pass.total_samples = total;
-        pass.dealt_share = static_cast<double>(ranges[i].count) / total;
-        pass.cancel = &interrupt_requested();
-        if (progress)
-            pass.progress = [&, range = ranges[i]](double fraction) {
-                progress((range.first + fraction * range.count) / total);
-            };
-        device_->render(pass, film);
-        add(frame.statistics, device_->statistics());
-        frame.light_error = std::max(frame.light_error, parts[i].light_error);
-        stop_if_interrupted();
+    const RenderSpec& spec = shot.shot().render;
+    const double begin_s = clock_(), scale = exposure_factor(shot.shot().shutter, shot.timing().fps);
+    const ViewSpec view = request.view ? *request.view : shot.shot().view;
+    double budget_s = spec.time_budget_s.value_or(std::numeric_limits<double>::infinity());
+    if (request.budget_s) budget_s = std::min(budget_s, kUnlimitedUntilMeasured_s);
+    SampleSteering steering(spec, budget_s, view, scale, [&] { return clock_() - begin_s; });
+
+    const bool steered = spec.max_error || std::isfinite(budget_s);
+    const std::vector<SampleRange> all = deal_samples(weights_of(parts), spec.samples);
+    Film& film = cleared_film(shot.shot().image, request.layers, needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
+    Rounds rounds(*device_, film, parts, frame);
+    for (int count = 0, first = 0; (count = steering.next_round(film)) > 0; first += count) {
+        const double before = steered ? static_cast<double>(first) / spec.samples : 0, part = static_cast<double>(count) / (steered ? spec.samples : count);
+        const auto progress = [&](double fraction) { request.progress(before + fraction * part); };
+        rounds.render(count, steering.active(), spec.samples == 1, request.progress ? progress : std::function<void(double)>());
+        if (first == 0 && request.budget_s) steering.set_budget(request.budget_s(difficulty_of(film, scale, clock_() - begin_s)));
     }
+    rounds.gather();
+    frame.sampling = report_sampling(film, steering.stopped_by(), view, scale);
     frame.image = film.develop();
-    expose(frame.image, exposure_factor(shot.shot().shutter, shot.timing().fps));
+    expose(frame.image, scale);
     frame.seconds = watch.seconds();
     return frame;
 }
@@ -121,9 +192,9 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
 double meter_exposure(const Shot& shot, const Scene& scene, FrameRenderer& renderer, const FrameTime& first) {
     Shot small = shot;
     small.image = limited_width(small.image, kMeterWidth);
-    small.render.samples = std::min(small.render.samples, kMeterSamples);
+    small.render.fix_samples(std::min(small.render.samples, kMeterSamples));
     const BoundShot bound(small, scene);
-    return metered_exposure(renderer.render(bound, first, FilmLayers{}).image);
+    return metered_exposure(renderer.render(bound, first, {}).image);
 }
 
 }  // namespace kadr

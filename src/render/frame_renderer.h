@@ -7,6 +7,7 @@
 #include "film/film.h"
 #include "frame/frame_state.h"
 #include "frame/motion_report.h"
+#include "render/sample_steering.h"
 
 namespace kadr {
 
@@ -15,9 +16,20 @@ struct RenderedFrame {
     Image image;
     DeviceStatistics statistics;   ///< summed over the parts of the shutter
     MotionReport motion;
+    SamplingReport sampling;
     double light_error = 0;        ///< SceneSnapshot::light_error, the largest of the parts
     double time_s = 0;             ///< of the shot
     double seconds = 0;
+};
+
+/// What decides how a frame is rendered beside its shot.
+struct FrameRequest {
+    FilmLayers layers;
+    std::optional<ViewSpec> view;                            ///< with its exposure; absent: the shot's as it is written
+    std::function<void(double fraction)> progress;
+    /// Wall time for the frame, asked for after its first round; `difficulty` is error times time, which more samples do not
+    /// change. Absent: the shot's budget.
+    std::function<double(double difficulty)> budget_s;
 };
 
 /// The layers that a shot asks for.
@@ -29,19 +41,20 @@ void add(DeviceStatistics& sum, const DeviceStatistics& part);
 /// Renders frames of bound shots on one device, one after another; keeps the film between frames.
 class FrameRenderer {
 public:
-    explicit FrameRenderer(Device& device) : device_(&device) {}
+    /// @param clock  seconds since some moment, for time budgets; absent: the system's steady clock
+    explicit FrameRenderer(Device& device, std::function<double()> clock = {});
 
     /// @throws Interrupted  when a signal asked to stop before the frame was complete
-    RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
-                         const std::function<void(double fraction)>& progress = {});
+    RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request);
     /// The same of a frame that is evaluated already. @param parts  make_snapshots of the frame
-    RenderedFrame render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FilmLayers& layers,
-                         const std::function<void(double fraction)>& progress = {});
+    RenderedFrame render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FrameRequest& request);
 
 private:
+    class Rounds;
     Film& cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted);
 
     Device* device_;
+    std::function<double()> clock_;
     std::optional<Film> film_;
 };
 

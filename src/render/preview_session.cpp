@@ -25,7 +25,7 @@ DeviceChoice open_device(const DeviceRequest& request) {
 
 Shot preview_shot(const RenderOptions& options, const std::function<void(Shot&)>& adjust) {
     Shot shot = parse_shot(options.shot, options.overrides);
-    if (options.overrides.samples == 0) shot.render.samples = std::min(shot.render.samples, kPreviewSamples);
+    if (options.overrides.samples == 0) shot.render.fix_samples(std::min(shot.render.samples, kPreviewSamples));
     adjust(shot);
     return shot;
 }
@@ -54,8 +54,9 @@ ViewSpec PreviewSession::view(double time_s) {
 RenderedFrame PreviewSession::render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
                                      int frames_left) {
     RenderedFrame frame = renderer_.render(
-        shot, time, layers, [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); });
+        shot, time, {layers, view_at(view_, time.time_s()), [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); }, {}});
     report_.samples += frame.statistics.pixel_samples;
+    report_.sampling = frame.sampling;
     report_.dropped += frame.statistics.dropped_samples;
     report_.motion_error_px = std::max(report_.motion_error_px, frame.motion.largest_px());
     add(report_.device, frame.statistics);

@@ -18,6 +18,7 @@
 #include "render/frame_identity.h"
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
+#include "render/shot_budget.h"
 #include "render/output_plan.h"
 #include "render/prepared_shot.h"
 #include "render/stopwatch.h"
@@ -62,7 +63,7 @@ private:
     void open_output();
     void deliver(int frame, int frames_left);
     bool is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const;
-    FrameCache::Found find_or_render(const FrameTime& time, int frames_left);
+    FrameCache::Found find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left);
     void render(DeliveryItem& item, const FrameTime& time, int frames_left);
     void load_device();
     ViewSpec view_with_exposure(const FrameTime& time);
@@ -84,6 +85,9 @@ private:
     std::optional<FrameRenderer> renderer_;
     std::set<std::string> astray_;  ///< what has been warned of
     FrameCache cache_{kMostCachedBytes};
+    double relmse_sum_ = 0;
+    int relmse_frames_ = 0;
+    ShotBudget budget_;
     std::optional<double> exposure_;
     std::optional<Delivery> delivery_;
 };
@@ -100,6 +104,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
         metered_frame_ = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
     identity_.emplace(*loaded_, metered_frame_);
     renderer_.emplace(*device_.device);
+    budget_ = ShotBudget(options.time_budget_s, [this] { return total_.seconds(); });
     summary_.device = device_.device->name();
     summary_.device_why = device_.why;
     summary_.times.load = total_.seconds();
@@ -152,18 +157,25 @@ ViewSpec RenderJob::view_with_exposure(const FrameTime& time) {
 }
 
 /// A frame whose inputs are those of an earlier one over the whole shutter is that frame again, else it is rendered.
-FrameCache::Found RenderJob::find_or_render(const FrameTime& time, int frames_left) {
+FrameCache::Found RenderJob::find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left) {
     const Stopwatch watch;
     const std::vector<SceneSnapshot> parts = make_snapshots(loaded_->bound(), time);
     const Hash key = content_key(parts);
     if (const auto same = cache_.find(key)) return *same;
     RenderedFrame frame =
-        renderer_->render(loaded_->bound(), parts, film_layers(loaded_->shot().output.aovs),
-                          [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); });
+        renderer_->render(loaded_->bound(), parts,
+                          {film_layers(loaded_->shot().output.aovs), view,
+                           [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); },
+                           budget_.dealer(frames_left)});
     frame.seconds = watch.seconds();
     summary_.pixel_samples += frame.statistics.pixel_samples;
     summary_.times.scene += frame.statistics.set_frame_s;
     summary_.times.trace += frame.statistics.render_s;
+    ++summary_.stopped_by[name_of(frame.sampling.stopped_by)];
+    if (frame.sampling.error.known) {
+        relmse_sum_ += frame.sampling.error.relmse;
+        summary_.relmse = relmse_sum_ / ++relmse_frames_;
+    }
     const auto kept = std::make_shared<const RenderedFrame>(std::move(frame));
     cache_.keep(key, time.number, kept);
     return {time.number, kept};
@@ -173,7 +185,7 @@ void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_lef
     load_device();
     item.view = view_with_exposure(time);
     const Stopwatch watch;
-    const auto [number, frame] = find_or_render(time, frames_left);
+    const auto [number, frame] = find_or_render(time, item.view, frames_left);
     if (number != time.number) item.report.same_as = number;
     item.metadata = frame_metadata(loaded_->shot(), time, *frame, summary_.device);
     if (item.report.same_as) item.metadata["same_as"] = std::to_string(number);
@@ -182,6 +194,7 @@ void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_lef
     item.report.dropped = frame->statistics.dropped_samples;
     item.report.motion_error_px = frame->motion.largest_px();
     item.report.motion = frame->motion;
+    item.report.sampling = frame->sampling;
     if (!item.report.same_as) item.report.device = frame->statistics;
     item.image = std::shared_ptr<const Image>(frame, &frame->image);
     summary_.same += item.report.same_as.has_value();

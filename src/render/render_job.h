@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "device/device.h"
 #include "frame/motion_report.h"
+#include "render/sample_steering.h"
 #include "shot/shot_parser.h"
 
 namespace kadr {
@@ -19,6 +21,8 @@ struct RenderOptions {
     ShotOverrides overrides;
     DeviceRequest device;
     bool overwrite = false;
+    /// Wall time for all frames of the shot that have to be rendered; absent: as long as it takes.
+    std::optional<double> time_budget_s;
     /// Video file where neither the shot nor the overrides name one; "{name}" is the shot's name. Empty: none.
     std::string default_video;
 };
@@ -36,6 +40,7 @@ struct FrameReport {
     std::uint64_t clamped = 0;       ///< half-float values above 65504
     double motion_error_px = 0;      ///< the largest of `motion`
     MotionReport motion;
+    SamplingReport sampling;
     std::vector<std::filesystem::path> files;
     DeviceStatistics device;
     std::string preview;             ///< "sheet", "onion" or "path": a picture that is no frame of the shot
@@ -49,6 +54,8 @@ struct RenderSummary {
     StageTimes times;
     std::uint64_t pixel_samples = 0;
     double samples_per_s = 0;
+    std::optional<double> relmse;    ///< mean of the estimates of the frames that were rendered
+    std::map<std::string, int> stopped_by;   ///< frames by what stopped their sampling
     std::size_t peak_memory_bytes = 0;
     std::string device, device_why;
     std::filesystem::path video;

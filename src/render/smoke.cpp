@@ -38,7 +38,7 @@ Shot smoke_shot(const fs::path& file, std::uint32_t seed) {
     shot.image = limited_width(shot.image, kSmokeWidth);
     // The analytic model is free of noise with one sample already.
     const int fewest = shot.render.integrator == Integrator::direct ? 1 : kFewestSamples;
-    shot.render.samples = std::clamp(shot.render.samples, fewest, kMostSamples);
+    shot.render.fix_samples(std::clamp(shot.render.samples, fewest, kMostSamples));
     shot.render.seed = seed;
     return shot;
 }
@@ -87,7 +87,7 @@ public:
         SmokeCase result;
         result.shot = name();
         result.frame = frame;
-        const Image linear = renderer_.render(loaded_.bound(), time_of(frame), FilmLayers{}).image;
+        const Image linear = renderer_.render(loaded_.bound(), time_of(frame), {}).image;
         result.failures = obvious_faults(linear);
         const fs::path golden = golden_file(frame);
         if (update && result.failures.empty()) {
@@ -126,7 +126,7 @@ private:
                                                   rendered.height));
             return;
         }
-        const Image other = display(renderer_.render(other_bound_, time_of(result.frame), FilmLayers{}).image, result.frame);
+        const Image other = display(renderer_.render(other_bound_, time_of(result.frame), {}).image, result.frame);
         result.compared = true;
         result.flip = mean_flip(reference, rendered);
         result.tolerance = kSeedTolerance * mean_flip(rendered, other) + kQuantisation;

@@ -148,6 +148,26 @@ public:
         for (const int side : {width, height}) list.items.push_back(scalar_node(source, std::to_string(side), false));
         put(source, key, std::move(list));
     }
+    /// A number of samples, or what decides it. `--max-error` keeps the file's number as the most: it makes a render cheaper,
+    /// never dearer. A time budget is there to be used: the number of a file does not end it.
+    void put_samples(const ShotOverrides& overrides) {
+        const bool steered = !overrides.max_error.empty() || !overrides.time_budget.empty();
+        const std::string most = overrides.samples > 0 ? std::to_string(overrides.samples) : std::string();
+        if (!steered) {
+            if (!most.empty()) put_text("--samples", "render.samples", most, false);
+            return;
+        }
+        YamlNode* render = find_entry_value(document_.root, "render");
+        YamlNode* samples = render ? find_entry_value(*render, "samples") : nullptr;
+        if (samples && !samples->is_map()) {
+            const YamlNode number = *samples;
+            *samples = map_node(number.place);
+            if (most.empty() && overrides.time_budget.empty()) put_node_at("render.samples.at_most", number);
+        }
+        if (!most.empty()) put_text("--samples", "render.samples.at_most", most, false);
+        if (!overrides.max_error.empty()) put_text("--max-error", "render.samples.max_error", overrides.max_error, false);
+        if (!overrides.time_budget.empty()) put_text("--time-budget", "render.samples.time_budget", overrides.time_budget, false);
+    }
     /// Replaces the file's video; its codec and quality stay where the new file has the same ending.
     void put_video(const std::string& file) {
         YamlNode* output = &document_.root;
@@ -163,6 +183,13 @@ public:
     std::vector<Diagnostic> take_problems() { return std::move(problems_); }
 
 private:
+    static YamlNode* find_entry_value(YamlNode& node, const char* key) {
+        YamlEntry* entry = node.is_map() ? find_entry(node, key) : nullptr;
+        return entry ? &entry->value : nullptr;
+    }
+    void put_node_at(const std::string& path, YamlNode value) {
+        if (auto problem = Override(value.place, path).put(document_.root, std::move(value))) problems_.push_back(std::move(*problem));
+    }
     const YamlSource& argument(std::string_view option, const std::string& value) {
         return document_.add_source(value, fmt::format("{} {}", option, value), folder_, true);
     }
@@ -186,7 +213,7 @@ std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverri
     for (const auto& [path, value] : overrides.set) apply.set(path, value);
     if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);
     if (!overrides.output.empty()) apply.put_text("--output", "output.frames", overrides.output, true);
-    if (overrides.samples > 0) apply.put_text("--samples", "render.samples", std::to_string(overrides.samples), false);
+    apply.put_samples(overrides);
     if (overrides.width > 0 && overrides.height > 0) apply.put_size(size_key, overrides.width, overrides.height);
     if (!overrides.video.empty()) apply.put_video(overrides.video);
     return apply.take_problems();

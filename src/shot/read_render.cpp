@@ -1,6 +1,7 @@
 // render and view.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,14 +15,26 @@ namespace {
 /// Full widths at which each filter is usually taken, in the order of FilterKind.
 constexpr std::array<double, 4> kFilterWidths{1, 3, 4, 1.5};
 
+constexpr int kDefaultMost = 1024;   // samples.at_most
+
 void read_samples(const Section& section, RenderSpec& render) {
     const Field samples = section["samples"];
-    if (samples && samples.node->is_map()) {
-        section.section("samples");  // refuses every key by name
-        if (samples.node->entries.empty()) samples.mismatch();
-        return;
-    }
-    assign(render.samples, read_integer(samples));
+    if (!samples || !samples.node->is_map()) return assign(render.samples, read_integer(samples));
+    const Section map = section.section("samples");
+    if (samples.node->entries.empty()) return samples.mismatch();
+    if (!map.present() || !(map["max_error"] || map["time_budget"] || map["at_least"] || map["at_most"])) return;
+    render.max_error = read_number(map["max_error"]);
+    render.time_budget_s = read_number(map["time_budget"]);
+    render.samples = kDefaultMost;
+    assign(render.samples, read_integer(map["at_most"]));
+    render.at_least = std::min(render.at_least, render.samples);
+    assign(render.at_least, read_integer(map["at_least"]));
+    if (!map["max_error"] && !map["time_budget"])
+        samples.error("render.samples has neither max_error nor time_budget",
+                      "expected { max_error: 0.01 }, { time_budget: 20 s } or both; a plain number gives every pixel as many samples");
+    if (render.at_least > render.samples)
+        map[map["at_least"] ? "at_least" : "at_most"].error(fmt::format("render.samples.at_least is {} and at_most {}", render.at_least, render.samples),
+                              "expected at_least to be no more than at_most");
 }
 
 void read_bounces(const Section& section, RenderSpec& render) {

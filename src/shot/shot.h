@@ -159,7 +159,16 @@ enum class FilterKind { box, gaussian, mitchell, blackman_harris };
 struct RenderSpec {
     SourceLocation integrator_where;
     Integrator integrator = Integrator::path;
-    int samples = 64;
+    int samples = 64;                        ///< a pixel; the most, where max_error or a time budget decides
+    int at_least = 32;                       ///< before max_error decides
+    std::optional<double> max_error;         ///< standard error of a pixel in values of the display: sample until it is below
+    std::optional<double> time_budget_s;     ///< wall time a frame may take
+    /// A number of samples that nothing but it decides.
+    void fix_samples(int count) {
+        samples = count;
+        max_error.reset();
+        time_budget_s.reset();
+    }
     struct Bounces {
         int total = 8, diffuse = 8, glossy = 8, transmission = 8;
         bool operator==(const Bounces&) const = default;

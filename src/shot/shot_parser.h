@@ -19,7 +19,9 @@ struct ShotOverrides {
     std::string frames;                                    ///< "1-24x2,40"; empty: the file's
     std::string output;                                    ///< frame pattern
     std::string video;                                     ///< file, or "none"
-    int samples = 0;                                       ///< 0: the file's
+    int samples = 0;                                       ///< 0: the file's; with one of the next two: the most
+    std::string max_error;                                 ///< render.samples.max_error; empty: the file's
+    std::string time_budget;                               ///< render.samples.time_budget, "20 s"; empty: the file's
     int width = 0, height = 0;                             ///< 0: the file's
 };
 

@@ -69,16 +69,20 @@ TEST(Film, HoldsNoNanAndNoInfinityButTheBackgroundsDepth) {
     film.beauty(0, 0) = {kNan, kInfinity, -kInfinity, kNan};
     film.samples(0, 0) = 1;
     film.surface(0, 0) = {{kNan, kInfinity, 0}, {kNan, 0, 1}, kNan, 1, {kInfinity, kNan}};
-    film.groups(0, 0) = {kNan, 1, 4};
+    film.beauty(0, 0, 1) = {1, 1, 1, 1};
+    film.samples(0, 0, 1) = 1;
     for (const float value : film.develop().pixels) EXPECT_TRUE(std::isfinite(value)) << value;
 }
 
 TEST(Film, ErrorIsTheStandardErrorOfTheMean) {
     Film film(1, 1, all_layers());
-    // Group means 1, 2, 3, 4: sample variance 5/3, standard error sqrt(5/3 / 4).
-    film.groups(0, 0) = {10, 30, 4};
+    // Means 1 and 3 of one sample and of three: variance of their mean (1 - 3)² 1·3 / 4².
+    film.beauty(0, 0, 0) = {1, 1, 1, 1};
+    film.samples(0, 0, 0) = 1;
+    film.beauty(0, 0, 1) = {9, 9, 9, 3};
+    film.samples(0, 0, 1) = 3;
     const Image image = film.develop();
-    EXPECT_FLOAT_EQ(image.at(0, 0, channel(image, "error.Y")), std::sqrt(5.0f / 12.0f));
+    EXPECT_FLOAT_EQ(image.at(0, 0, channel(image, "error.Y")), std::sqrt(0.75f));
 }
 
 TEST(Film, ClearForgetsEverything) {
@@ -86,7 +90,8 @@ TEST(Film, ClearForgetsEverything) {
     film.beauty(0, 0) = {1, 1, 1, 1};
     film.samples(0, 0) = 1;
     film.surface(0, 0) = {{1, 1, 1}, {0, 0, 1}, 1, 1, {1, 1}};
-    film.groups(0, 0) = {1, 1, 2};
+    film.beauty(0, 0, 1) = {1, 1, 1, 1};
+    film.samples(0, 0, 1) = 2;
     film.clear();
     EXPECT_EQ(film.develop().pixels, Film(1, 1, all_layers()).develop().pixels);
 }

@@ -15,26 +15,30 @@ public:
     }
     void render(const Pass& pass, Film& film) override {
         FakeDeviceScript& script = fake_device();
-        if (script.before_render) script.before_render(script.renders);
-        ++script.renders;
+        if (pass.half == 0) {
+            if (script.before_render) script.before_render(script.renders);
+            ++script.renders;
+        }
         script.passes.push_back(pass);
         for (int y = 0; y < film.height(); ++y)
-            for (int x = 0; x < film.width(); ++x) add(film, x, y, pass.sample_count, script.scale);
+            for (int x = 0; x < film.width(); ++x) add(film, x, y, pass, script.scale);
         statistics_.pixel_samples += static_cast<std::uint64_t>(film.width()) * film.height() * pass.sample_count;
         if (pass.progress) pass.progress(1);
     }
     DeviceStatistics statistics() const override { return statistics_; }
 
 private:
-    void add(Film& film, int x, int y, int count, float scale) const {
+    void add(Film& film, int x, int y, const Pass& pass, float scale) const {
+        const int count = pass.sample_count, half = pass.half;
+        if (pass.active && pass.active[static_cast<std::size_t>(y * film.width() + x)] == 0) return;
         const float value = scale * static_cast<float>(x + y + frame_ + 0.01 * seed_) / 64.0f;
-        Film::Beauty& beauty = film.beauty(x, y);
+        Film::Beauty& beauty = film.beauty(x, y, half);
         beauty.r += count * value;
         beauty.g += count * value * 0.5f;
         beauty.b += count * 0.25f * scale;
         beauty.alpha += static_cast<float>(count);
-        film.samples(x, y) += count;
-        if (film.weighted()) film.weight(x, y) += static_cast<float>(count);
+        film.samples(x, y, half) += count;
+        if (film.weighted()) film.weight(x, y, half) += static_cast<float>(count);
     }
     int frame_ = 0;
     unsigned seed_ = 0;

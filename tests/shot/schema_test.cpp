@@ -46,9 +46,10 @@ TEST(Schema, DescribesOneKeyLikeThis) {
               "  example  angle: 180 deg\n");
     EXPECT_EQ(describe_schema("render.samples.max_error"),
               "render.samples.max_error\n"
-              "  sample until the error is below this\n"
+              "  sample each pixel until its standard error is below this, in values of the display (0 to 1)\n"
               "\n"
-              "  not supported yet: the key is part of the format, but this version of Kadr cannot do it\n");
+              "  type     1e-06 to 1\n"
+              "  example  max_error: 0.01\n");
 }
 
 std::string unknown(std::string_view key) {

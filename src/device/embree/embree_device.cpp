@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "device/embree/embree_scene.h"
 #include "device/embree/tile_job.h"
+#include "kernels/sampler/sobol.h"
 
 namespace kadr {
 namespace {
@@ -144,6 +145,11 @@ private:
         job.x1 = std::min(x0 + kTileEdge, film.width());
         job.y1 = std::min(y0 + kTileEdge, film.height());
         job.surface_layers = film.layers().any_surface();
+        job.half = pass.half;
+        job.seed = kernels::seed_of_half(job.scene->settings.seed, pass.half);
+        job.active = pass.active;
+        job.film_width = film.width();
+        if (!any_active(job)) return;
         job.centred = pass.total_samples == 1 && job.scene->settings.integrator == kernels::IntegratorKind::direct;
         for (int s = 0; s < pass.sample_count; s += kSamplesPerBatch) {
             if (pass.cancel && pass.cancel->load(std::memory_order_relaxed)) return;
@@ -154,28 +160,41 @@ private:
         }
     }
 
+    static bool any_active(const TileJob& job) {
+        if (!job.active) return true;
+        for (int y = job.y0; y < job.y1; ++y)
+            for (int x = job.x0; x < job.x1; ++x)
+                if (job.is_active(x, y)) return true;
+        return false;
+    }
+
     /// Adds a batch to the film, in the order of the samples.
     static void accumulate(const TileJob& job, const TileResult& r, Film& film, Worker& worker) {
         int slot = 0;
         for (int y = job.y0; y < job.y1; ++y)
-            for (int x = job.x0; x < job.x1; ++x)
+            for (int x = job.x0; x < job.x1; ++x) {
+                if (!job.is_active(x, y)) {
+                    slot += job.sample_count;
+                    continue;
+                }
                 for (int s = 0; s < job.sample_count; ++s, ++slot) {
                     const float sum = r.radiance[0][slot] + r.radiance[1][slot] + r.radiance[2][slot];
                     if (!std::isfinite(sum)) {
                         ++worker.counters.dropped;
                         continue;
                     }
-                    ++film.samples(x, y);
+                    ++film.samples(x, y, job.half);
                     ++worker.samples;
-                    Film::Beauty& beauty = film.beauty(x, y);
+                    Film::Beauty& beauty = film.beauty(x, y, job.half);
                     const float w = r.weight[slot] * r.light[slot];
-                    if (film.weighted()) film.weight(x, y) += r.light[slot];
+                    if (film.weighted()) film.weight(x, y, job.half) += r.light[slot];
                     beauty.r += r.radiance[0][slot] * w;
                     beauty.g += r.radiance[1][slot] * w;
                     beauty.b += r.radiance[2][slot] * w;
                     beauty.alpha += r.alpha[slot] * w;
                     if (job.surface_layers) add_surface(r, slot, film.surface(x, y));
                 }
+            }
     }
 
     static void add_surface(const TileResult& r, int slot, Film::Surface& surface) {

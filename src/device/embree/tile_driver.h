@@ -76,8 +76,11 @@ private:
                 set_lane(sample, i, static_cast<unsigned>(job.first_sample + s % samples));
                 set_lane(slot, i, static_cast<unsigned>(s));
             }
-            const Mask<F> active = first_lanes<F>(total - first);
-            const Sampler<F> sampler = make_sampler<F>(x, y, sample, scene.settings.seed);
+            Mask<F> active = first_lanes<F>(total - first);
+            if (job.active)
+                for (int i = 0; i < N; ++i)
+                    if (!job.is_active(lane(x, i), lane(y, i))) set_lane(active, i, false);
+            const Sampler<F> sampler = make_sampler<F>(x, y, sample, job.seed);
             Vec2<F> offset{F(0.0f), F(0.0f)}, lens{F(0.5f), F(0.5f)};
             F weight(1.0f), time(0.0f), light(1.0f), u_time(0.0f);
             if (!job.centred) {

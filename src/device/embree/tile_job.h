@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include "device/embree/embree_api.h"
@@ -45,7 +46,14 @@ struct TileJob {
     const kernels::FilterTable* filter = nullptr;
     const kernels::Shutter* shutter = nullptr;
     int first_sample = 0, sample_count = 0;  ///< of this batch
+    unsigned seed = 0;                       ///< of the half of the film that the batch belongs to
+    int half = 0;
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;      ///< the tile's pixels
+    const std::uint8_t* active = nullptr;    ///< of the whole film, [y][x]; null: all pixels
+    int film_width = 0;
+    bool is_active(int x, int y) const {
+        return !active || active[static_cast<std::size_t>(y) * static_cast<std::size_t>(film_width) + static_cast<std::size_t>(x)] != 0;
+    }
     bool surface_layers = false;
     void (*log)(void* user, const LoggedRay& ray) = nullptr;  ///< null: do not record
     void* log_user = nullptr;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "film/film.h"
+
+// How noisy a film is, from its two halves A and B of n and m samples, scrambled independently of each other. The
+// samples of one Owen-scrambled Sobol sequence are not independent: their variance says nothing of the error of their
+// mean. Two means of independent sequences are: with I = (n A + m B) / (n + m), the mean square error of I is what (A -
+// B)² n m / (n + m)² is on average, whatever the sequences do inside.
+
+namespace kadr {
+
+/// The relative mean square error of a picture as it is known from the picture alone.
+struct ErrorEstimate {
+    bool known = false;                      ///< both halves have samples somewhere
+    double relmse = 0;                       ///< mean over pixels and R, G, B of error² / (value² + 0.01)
+    double relmse_low = 0, relmse_high = 0;  ///< where it is in 95 of 100 frames, as far as the pixels' spread tells
+    std::size_t unknown_pixels = 0;          ///< one half is empty, or a sum overflowed
+};
+
+/// The value in the denominator is the pixel's own, less half of its noise: I² is too large by the noise, and I² less
+/// the noise (A B) would be too small where one half alone holds a bright sample.
+///
+/// @param scale  of radiance in the picture over that in the film (physical exposure)
+ErrorEstimate estimate_error(const Film& film, double scale = 1);
+
+/// Standard error of the luminance of every pixel, [y][x]: the root of the mean over 7 x 7 pixels (one pair of halves
+/// says little). Infinite where a sum overflowed, 0 where nothing is known.
+std::vector<float> standard_errors(const Film& film);
+
+/// Sums over squares of 2 `radius` + 1 pixels, clipped at the borders, and the number of pixels in each.
+struct WindowSums {
+    std::vector<double> sums;  ///< [y][x]
+    std::vector<int> counts;   ///< [y][x]
+};
+WindowSums window_sums(const std::vector<double>& values, int width, int height, int radius);
+
+}  // namespace kadr

@@ -1,0 +1,130 @@
+#include "film/error_estimate.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace kadr {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// One pixel's halves: means of equal R, G and B, and samples.
+void put(Film& film, int x, int y, float a, std::uint32_t n, float b, std::uint32_t m) {
+    const float means[] = {a, b};
+    const std::uint32_t counts[] = {n, m};
+    for (int half = 0; half < Film::kHalves; ++half) {
+        const float sum = means[half] * static_cast<float>(counts[half]);
+        film.beauty(x, y, half) = {sum, sum, sum, static_cast<float>(counts[half])};
+        film.samples(x, y, half) = counts[half];
+    }
+}
+
+TEST(ErrorEstimate, IsThatOfItsDefinition) {
+    Film film(1, 1, {});
+    put(film, 0, 0, 1, 4, 2, 12);
+    // Mean 1.75, noise (1 - 2)² 4·12/16² = 0.1875.
+    EXPECT_NEAR(estimate_error(film).relmse, 0.1875 / (1.75 * 1.75 - 0.09375 + 0.01), 1e-12);
+    const double s = 10;
+    EXPECT_NEAR(estimate_error(film, s).relmse, 18.75 / (306.25 - 9.375 + 0.01), 1e-12);
+}
+
+TEST(ErrorEstimate, OfEqualHalvesIsNothing) {
+    Film film(2, 1, {});
+    put(film, 0, 0, 3, 8, 3, 8), put(film, 1, 0, 0, 8, 0, 8);
+    const ErrorEstimate estimate = estimate_error(film);
+    EXPECT_TRUE(estimate.known);
+    EXPECT_EQ(estimate.relmse, 0);
+}
+
+TEST(ErrorEstimate, OfOneHalfIsUnknown) {
+    Film film(2, 1, {});
+    put(film, 0, 0, 1, 1, 0, 0);
+    EXPECT_FALSE(estimate_error(film).known);
+    EXPECT_EQ(estimate_error(film).unknown_pixels, 2u);
+}
+
+TEST(ErrorEstimate, WhatOverflowsIsUnknownAndNotSmall) {
+    Film film(2, 1, {});
+    put(film, 0, 0, 1, 4, 1, 4), put(film, 1, 0, kInfinity, 4, 1, 4);
+    EXPECT_EQ(estimate_error(film).unknown_pixels, 1u);
+    EXPECT_TRUE(std::isinf(standard_errors(film)[1]));
+}
+
+/// A film of independent pixels of value 0.5: exponential radiance, as of a light that few paths find.
+Film noisy_film(unsigned seed, int samples) {
+    Film film(64, 64, {});
+    std::mt19937 random(seed);
+    std::exponential_distribution<float> radiance(2.0f);
+    for (int half = 0; half < Film::kHalves; ++half)
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                Film::Beauty& sum = film.beauty(x, y, half);
+                for (int i = 0; i < samples; ++i) {
+                    const float value = radiance(random);
+                    sum.r += value, sum.g += value, sum.b += value;
+                }
+                film.samples(x, y, half) = static_cast<std::uint32_t>(samples);
+            }
+    return film;
+}
+
+double true_relmse(const Film& film) {
+    constexpr double kTruth = 0.5;
+    double sum = 0;
+    const Image image = film.develop();
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+        sum += (image.pixels[i] - kTruth) * (image.pixels[i] - kTruth) / (kTruth * kTruth + 0.01);
+    return sum / (64.0 * 64);
+}
+
+// 4096 pixels: the relative spread of a mean of squares of near-normal errors is sqrt(2 / 4096) = 2.2 % a frame. The
+// value in the denominator is noisy: at 2 x 16 samples its square is off by 1/32 of itself twice over, a bias of a few
+// per cent.
+TEST(ErrorEstimate, IsCalibratedOnKnownNoise) {
+    for (const int samples : {16, 64}) {
+        double estimated = 0, truth = 0;
+        for (unsigned seed = 0; seed < 16; ++seed) {
+            const Film film = noisy_film(seed, samples);
+            estimated += estimate_error(film).relmse, truth += true_relmse(film);
+        }
+        EXPECT_NEAR(estimated / truth, 1, 0.06) << samples;
+    }
+}
+
+TEST(ErrorEstimate, NineteenOfTwentyIntervalsHoldTheExpectation) {
+    int inside = 0;
+    constexpr int kFrames = 200;
+    // 1/32 variance of value 0.25 over 0.25 + 0.01, the expectation without the denominator's noise (1 % at 2 x 64).
+    const double expectation = 0.25 / 128 / 0.26;
+    for (unsigned seed = 0; seed < kFrames; ++seed) {
+        const ErrorEstimate e = estimate_error(noisy_film(1000 + seed, 64));
+        inside += e.relmse_low <= expectation && expectation <= e.relmse_high;
+    }
+    // Binomial, 200 of 0.95: deviation 3.1; four of them below, and one more per cent for the denominator.
+    EXPECT_GE(inside, 176);
+    EXPECT_LT(inside, kFrames);
+}
+
+TEST(StandardErrors, AreThoseOfTheLuminanceOverTheWindow) {
+    Film film(9, 9, {});
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 9; ++x) put(film, x, y, 1, 2, 1, 2);
+    put(film, 4, 4, 1, 2, 3, 2);  // noise 1
+    const std::vector<float> errors = standard_errors(film);
+    EXPECT_NEAR(errors[4 * 9 + 4], std::sqrt(1.0 / 49), 1e-6);
+    EXPECT_NEAR(errors[4 * 9 + 1], std::sqrt(1.0 / 35), 1e-6);  // five columns of seven rows
+    EXPECT_EQ(errors[4 * 9 + 0], 0);
+    EXPECT_EQ(errors[0], 0);
+}
+
+TEST(WindowSums, ClipAtTheBorders) {
+    const WindowSums sums = window_sums(std::vector<double>(12, 1.0), 4, 3, 1);
+    EXPECT_EQ(sums.counts, (std::vector<int>{4, 6, 6, 4, 6, 9, 9, 6, 4, 6, 6, 4}));
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(sums.sums[i], sums.counts[i]);
+}
+
+}  // namespace
+}  // namespace kadr
