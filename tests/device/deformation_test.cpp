@@ -2,8 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
+#include <string>
+#include <utility>
 
 #include "device/embree/bounds_tree.h"
+#include "device/embree/deforming_meshes.h"
 #include "device/small_scene.h"
 
 namespace kadr::test {
@@ -180,6 +184,94 @@ TEST(Deformation, RefittedStructuresShowTheNewShape) {
     EXPECT_NEAR(mean(squeeze(0.5), 3) / whole, 0.5, 0.01);
     EXPECT_NEAR(mean([](kernels::Vec3f p, double) { return kernels::Vec3f{p.x + 20, p.y, p.z}; }, 4), 0, 1e-6);
     EXPECT_NEAR(mean(same, 5) / whole, 1, 1e-6);
+}
+
+TEST(StructureUpdate, FollowsTheGrowthOfTheTree) {
+    const auto chosen = [](unsigned keys_before, bool low, unsigned keys, double growth) { return choose_update({keys_before, low, keys, growth}); };
+    EXPECT_EQ(chosen(0, false, 1, 1), StructureUpdate::build);  // the first frame
+    EXPECT_EQ(chosen(1, false, 1, 1), StructureUpdate::refit);
+    EXPECT_EQ(chosen(1, false, 1, kMostGrowth), StructureUpdate::refit);
+    EXPECT_EQ(chosen(1, false, 1, kMostGrowth + 1e-9), StructureUpdate::build_low);
+    EXPECT_EQ(chosen(1, true, 1, 1.5), StructureUpdate::build_low);  // still as fast
+    EXPECT_EQ(chosen(1, true, 1, 1.01), StructureUpdate::build);      // calmed down: Embree cannot refit the low one
+    EXPECT_EQ(chosen(1, false, 1, NAN), StructureUpdate::build_low);
+    for (const unsigned before : {0u, 1u, 2u, 3u}) EXPECT_EQ(chosen(before, false, 3, 1), StructureUpdate::build);  // several keys: none is refitted
+    EXPECT_EQ(chosen(3, false, 1, 1), StructureUpdate::build);
+}
+
+/// Structures of a sphere from frame to frame, as DeformingMeshes makes them.
+class Structures {
+public:
+    explicit Structures(GeometryData mesh = unit_sphere(16)) : sphere_(std::move(mesh)) {
+        add_bent(scene_, sphere_, glowing(), 1, same);
+        meshes_ = std::make_unique<DeformingMeshes>(device_.get(), scene_.scene);
+    }
+    /// "built low refitted" of the frame
+    std::string frame(unsigned keys, const Bend& bend) {
+        scene_.snapshot.deformed[0] = bent(sphere_, scene_.snapshot.instances[0].geometry, keys, bend, ++version_);
+        std::vector<kernels::Geometry> geometries;
+        view_.materials = scene_.scene.materials.data();
+        meshes_->set_frame(scene_.snapshot, view_, false, geometries);
+        EXPECT_EQ(rtcGetDeviceError(device_.get()), RTC_ERROR_NONE);
+        return std::to_string(meshes_->built()) + " " + std::to_string(meshes_->built_low()) + " " + std::to_string(meshes_->refitted());
+    }
+    /// Distance of a ray down the z axis from z = 5, at the shutter's opening.
+    double depth(float x, float y) {
+        RTCRayHit hit{{x, y, 5, 0, 0, 0, -1, 0, INFINITY, 0xffffffffu, 0, 0}, {}};
+        hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        QueryContext context;
+        intersect1(meshes_->structure(scene_.snapshot.instances[0]), context, hit, false);
+        return static_cast<double>(hit.ray.tfar);
+    }
+
+private:
+    GeometryData sphere_;
+    SmallScene scene_;
+    kernels::SceneView view_{};
+    EmbreeDeviceHandle device_{rtcNewDevice(nullptr)};
+    std::unique_ptr<DeformingMeshes> meshes_;
+    std::uint64_t version_ = 0;
+};
+
+TEST(StructureUpdate, ARefitKeepsTheTree) {
+    // Embree takes the wish for a refit and builds anew where the scene is not of the kind that it refits. What tells the
+    // two apart: a build leaves out triangles beyond 1.844e18, and a refit does not look for them again.
+    GeometryData g = unit_sphere(16);
+    const auto first = static_cast<std::uint32_t>(g.positions.size());
+    g.positions.insert(g.positions.end(), {{-1, -1, -10}, {1, -1, -10}, {0, 1, -10}});
+    g.normals.insert(g.normals.end(), 3, {0, 0, 1});
+    g.indices.insert(g.indices.end(), {first, first + 1, first + 2});
+    const auto wide = [](float by) { return [by](kernels::Vec3f p, double) { return p.z < -9 ? kernels::Vec3f{by * p.x, by * p.y, p.z} : p; }; };
+    Structures structures(g);
+    EXPECT_EQ(structures.frame(1, wide(1.9e18f)), "1 0 0");
+    EXPECT_EQ(structures.frame(1, wide(1.8e18f)), "0 0 1");
+    EXPECT_EQ(structures.depth(3, 3), INFINITY);
+    Structures anew(g);
+    anew.frame(1, wide(1.8e18f));
+    EXPECT_NEAR(anew.depth(3, 3), 15, 1e-3);  // it could be met
+}
+
+TEST(StructureUpdate, IsWhatHappensToTheMesh) {
+    Structures structures;
+    const auto deep = [](float by) { return [by](kernels::Vec3f p, double) { return kernels::Vec3f{p.x, p.y, by * p.z}; }; };
+    // Some triangles thrown about: no tree of before fits.
+    const auto mess = [](float by) { return [by](kernels::Vec3f p, double) { return kernels::Vec3f{std::fmod(by * 97 * p.x, 1.0f), std::fmod(by * 83 * p.y, 1.0f), std::fmod(by * 71 * p.z, 1.0f)}; }; };
+    const auto shows = [&](float by) { EXPECT_NEAR(structures.depth(0.01f, 0.02f), 5 - by, 0.02) << by; };
+    EXPECT_EQ(structures.frame(1, same), "1 0 0");
+    shows(1);
+    EXPECT_EQ(structures.frame(1, deep(1.1f)), "0 0 1");
+    shows(1.1f);
+    EXPECT_EQ(structures.frame(1, mess(1)), "1 1 0");
+    EXPECT_EQ(structures.frame(1, deep(1.2f)), "1 0 0");  // no worse than the mess: a tree worth keeping
+    shows(1.2f);
+    EXPECT_EQ(structures.frame(1, deep(1.25f)), "0 0 1");
+    shows(1.25f);
+    EXPECT_EQ(structures.frame(2, deep(1.3f)), "1 0 0");
+    shows(1.3f);
+    EXPECT_EQ(structures.frame(2, deep(1.35f)), "1 0 0");
+    shows(1.35f);
+    EXPECT_EQ(structures.frame(1, deep(1.4f)), "1 0 0");
+    shows(1.4f);
 }
 
 TEST(BoundsTree, TellsAGentleBendFromAMess) {

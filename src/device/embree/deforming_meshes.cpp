@@ -7,13 +7,15 @@
 namespace kadr {
 namespace {
 
-/// Growth of the tree's cost beyond which a structure is built anew: rays through a refitted structure stay within a
-/// fifth of the speed of a new one (tools/bench/skinning_bench.cpp compares the two).
-constexpr double kMostGrowth = 1.2;
-
 std::span<const kernels::Vertex> first_key(const DeformedMesh& mesh) { return std::span(mesh.vertices).first(mesh.vertices.size() / mesh.key_count); }
 
 }  // namespace
+
+StructureUpdate choose_update(const StructureState& state) {
+    if (state.keys != 1 || state.keys_before != 1) return StructureUpdate::build;
+    if (!(state.growth <= kMostGrowth)) return StructureUpdate::build_low;
+    return state.low ? StructureUpdate::build : StructureUpdate::refit;
+}
 
 const DeformingMeshes::Entry& DeformingMeshes::find(const SnapshotInstance& instance) const {
     return entries_.at({deformer_of_[static_cast<std::size_t>(instance.deformed)], instance.material});
@@ -22,7 +24,7 @@ const DeformingMeshes::Entry& DeformingMeshes::find(const SnapshotInstance& inst
 void DeformingMeshes::set_frame(const SceneSnapshot& snapshot, const kernels::SceneView& view, bool cull_backfaces, std::vector<kernels::Geometry>& geometries) {
     deformer_of_.clear();
     bends_ = false;
-    built_ = refitted_ = 0;
+    built_ = built_low_ = refitted_ = 0;
     for (const auto& mesh : snapshot.deformed) deformer_of_.push_back(mesh->deformer);
     std::map<Key, int> shown;  // deformed mesh
     for (const SnapshotInstance& instance : snapshot.instances)
@@ -48,14 +50,16 @@ void DeformingMeshes::set_previous(const SceneSnapshot& snapshot, std::vector<ke
         }
 }
 
-void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bool cull_backfaces) {
+void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bool cull_backfaces, RTCBuildQuality quality) {
     const std::vector<std::uint32_t>& indices = scene_.geometries[entry.mesh->geometry].indices;
     entry.structure.reset(rtcNewScene(device_));
     entry.triangles.reset(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
-    // What Embree can refit lives in a dynamic scene; several keys need the other kind.
+    // Embree has a tree of its own for a geometry, and refits it, only in dynamic scenes of low quality; the geometry's
+    // quality then says how that tree is built (REFIT: at default quality first).
     if (entry.mesh->key_count == 1) {
         rtcSetSceneFlags(entry.structure.get(), RTC_SCENE_FLAG_DYNAMIC);
-        rtcSetGeometryBuildQuality(entry.triangles.get(), RTC_BUILD_QUALITY_REFIT);
+        rtcSetSceneBuildQuality(entry.structure.get(), RTC_BUILD_QUALITY_LOW);
+        rtcSetGeometryBuildQuality(entry.triangles.get(), quality);
     }
     if (needs_filter(material, cull_backfaces)) {
         rtcSetGeometryIntersectFilterFunction(entry.triangles.get(), alpha_filter);
@@ -76,17 +80,21 @@ void DeformingMeshes::point_at(Entry& entry, const DeformedMesh& mesh) {
 void DeformingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, const kernels::Material& material, bool cull_backfaces) {
     if (entry.mesh && entry.mesh->version == mesh->version && entry.mesh->key_count == mesh->key_count) return;
     const std::vector<std::uint32_t>& indices = scene_.geometries[mesh->geometry].indices;
-    const bool refit = entry.mesh && mesh->key_count == 1 && entry.mesh->key_count == 1 &&
-                       entry.bounds.cost(first_key(*mesh), indices) <= kMostGrowth * entry.cost_when_built;
+    StructureState state{entry.mesh ? entry.mesh->key_count : 0, entry.low, mesh->key_count, 1};
+    const double cost = mesh->key_count == 1 && state.keys_before == 1 ? entry.bounds.cost(first_key(*mesh), indices) : 0;
+    if (cost > 0) state.growth = cost / entry.cost_when_built;
+    const StructureUpdate chosen = choose_update(state);
     entry.mesh = mesh;
-    if (!refit) {
-        create(entry, material, cull_backfaces);
+    if (chosen != StructureUpdate::refit) {
+        entry.low = chosen == StructureUpdate::build_low;
+        create(entry, material, cull_backfaces, entry.low ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_REFIT);
         if (mesh->key_count == 1) {
             entry.bounds.order(first_key(*mesh), indices);
             entry.cost_when_built = entry.bounds.cost(first_key(*mesh), indices);
         }
     }
-    ++(refit ? refitted_ : built_);
+    ++(chosen == StructureUpdate::refit ? refitted_ : built_);
+    built_low_ += entry.low ? 1 : 0;
     point_at(entry, *mesh);
     rtcCommitGeometry(entry.triangles.get());
     rtcCommitScene(entry.structure.get());

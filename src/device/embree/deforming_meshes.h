@@ -14,12 +14,35 @@
 
 namespace kadr {
 
+/// How the structure of a bending mesh follows its vertices.
+enum class StructureUpdate {
+    build,     ///< anew, at Embree's default quality
+    build_low, ///< anew, at low quality: a quarter of the time, for rays a fifth slower
+    refit,     ///< the same tree with new bounds
+};
+
+/// What is known of a mesh's structure and of its vertices in the new frame.
+struct StructureState {
+    unsigned keys_before = 0;  ///< of the vertices that it was made for; 0: there is none
+    bool low = false;          ///< built at low quality
+    unsigned keys = 1;         ///< of the new vertices
+    double growth = 1;         ///< BoundsTree::cost of the tree with the new vertices over that when it was built
+};
+
+/// Growth of the tree's cost beyond which a structure is built anew. What BoundsTree measures grows more slowly than what
+/// rays pay: at this growth rays through a refitted structure are up to a fifth slower than through a new one
+/// (trace_structure in tools/bench/structure_bench.cpp: 1.09 and 1.19 times in two runs; 1.27 at a growth of 1.1, 1.35 at 1.2).
+inline constexpr double kMostGrowth = 1.05;
+
+/// A tree that its vertices have left is built at low quality, frame by frame while they move on as fast. Embree refits
+/// only what it has built at default quality, so once they have calmed down a tree worth keeping is built. Of vertices
+/// with several keys Embree builds one kind of tree and refits none.
+StructureUpdate choose_update(const StructureState& state);
+
 /// Meshes that bend, each in a structure of its own that instances show.
 ///
-/// A mesh keeps its structure from frame to frame. One whose vertices did not change is not touched. One that keeps its
-/// shape while the shutter is open is refitted until a measure of the structure's quality says that rays would become
-/// more than a fifth slower, and built anew then. One that bends while the shutter is open is built anew in every frame:
-/// Embree refits no structure with several keys.
+/// A mesh keeps its structure from frame to frame. One whose vertices did not change is not touched; choose_update says
+/// what happens to the others.
 class DeformingMeshes {
 public:
     DeformingMeshes(RTCDevice device, const Scene& scene) : device_(device), scene_(scene) {}
@@ -36,6 +59,7 @@ public:
 
     bool bends() const { return bends_; }  ///< whether any mesh bends while the shutter is open
     std::uint64_t built() const { return built_; }        ///< structures built anew for this frame
+    std::uint64_t built_low() const { return built_low_; }  ///< of those, at low quality
     std::uint64_t refitted() const { return refitted_; }  ///< structures refitted for this frame
 
 private:
@@ -46,13 +70,14 @@ private:
         std::unique_ptr<GeometryUser> user;        ///< whose address Embree keeps
         BoundsTree bounds;
         double cost_when_built = 0;
+        bool low = false;                          ///< built at low quality
         std::vector<kernels::Vec3f> previous;
     };
     using Key = std::pair<unsigned, unsigned>;     ///< deformer, material
 
     const Entry& find(const SnapshotInstance& instance) const;
     void update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, const kernels::Material& material, bool cull_backfaces);
-    void create(Entry& entry, const kernels::Material& material, bool cull_backfaces);
+    void create(Entry& entry, const kernels::Material& material, bool cull_backfaces, RTCBuildQuality quality);
     void point_at(Entry& entry, const DeformedMesh& mesh);
     kernels::Geometry view_of(const Entry& entry) const;
 
@@ -61,7 +86,7 @@ private:
     std::map<Key, Entry> entries_;
     std::vector<unsigned> deformer_of_;  ///< [deformed mesh of the snapshot]
     bool bends_ = false;
-    std::uint64_t built_ = 0, refitted_ = 0;
+    std::uint64_t built_ = 0, built_low_ = 0, refitted_ = 0;
 };
 
 }  // namespace kadr
