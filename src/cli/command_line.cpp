@@ -81,20 +81,24 @@ std::pair<std::string, std::string> parse_setting(const std::string& text) {
     return {text.substr(0, at), text.substr(at + 1)};
 }
 
-/// "1.75s", "1.75 s" or "1.75".
-double parse_seconds(const std::string& text) {
+/// "1.75 s" as a number and what follows it without the blanks between; nothing where no number begins the text.
+std::optional<std::pair<double, std::string>> number_and_unit(const std::string& text) {
     std::size_t used = 0;
     double value = 0;
     try {
         value = std::stod(text, &used);
     } catch (const std::exception&) {
-        used = 0;
+        return std::nullopt;
     }
-    std::string unit = text.substr(used);
-    unit.erase(0, unit.find_first_not_of(' ') == std::string::npos ? unit.size() : unit.find_first_not_of(' '));
-    if (used == 0 || !(unit.empty() || unit == "s") || !(value > -1e9 && value < 1e9))
+    return std::pair(value, text.substr(std::min(text.size(), text.find_first_not_of(' ', used))));
+}
+
+/// "1.75s", "1.75 s" or "1.75".
+double parse_seconds(const std::string& text) {
+    const auto found = number_and_unit(text);
+    if (!found || !(found->second.empty() || found->second == "s") || !(found->first > -1e9 && found->first < 1e9))
         throw InputError(fmt::format("--time is '{}'", text), "expected seconds, as in --time 1.75s");
-    return value;
+    return found->first;
 }
 
 ViewTransform parse_view(const std::string& text) {
@@ -117,19 +121,12 @@ Rational parse_fps(const std::string& text) {
 /// "90s", "10m", "1.5 h"; a number alone is seconds.
 double parse_duration(const std::string& text, const std::string& option) {
     static const std::map<std::string, double> kUnits{{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
-    std::size_t used = 0;
-    double value = 0;
-    try {
-        value = std::stod(text, &used);
-    } catch (const std::exception&) {
-        used = 0;
-    }
-    std::string unit = text.substr(used);
-    unit.erase(0, std::min(unit.size(), unit.find_first_not_of(' ')));
-    const auto found = kUnits.find(unit);
-    if (used == 0 || found == kUnits.end() || !(value > 0 && value < 1e7))
-        throw InputError(fmt::format("{} is '{}'", option, text), fmt::format("expected a time above zero, as in {} 90s, 10m or 2h", option));
-    return value * found->second;
+    const auto found = number_and_unit(text);
+    const auto unit = found ? kUnits.find(found->second) : kUnits.end();
+    if (unit == kUnits.end() || !(found->first > 0 && found->first < 1e7))
+        throw InputError(fmt::format("{} is '{}'", option, text),
+                         fmt::format("expected a time above zero, as in {} 90s, 10m or 2h", option));
+    return found->first * unit->second;
 }
 
 /// The parser and where its values go.
@@ -425,7 +422,7 @@ void Parser::fill_compare() {
 
 void Parser::fill_in() {
     fill_overrides(invocation_.render);
-    if (!raw_.time_budget_shot.empty()) invocation_.render.time_budget_s = parse_duration(raw_.time_budget_shot, "--time-budget-shot");
+    if (!raw_.time_budget_shot.empty()) invocation_.render.overrides.time_budget_shot = fmt::format("{} s", parse_duration(raw_.time_budget_shot, "--time-budget-shot"));
     fill_preview();
     fill_compare();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());

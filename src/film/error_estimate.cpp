@@ -8,8 +8,6 @@
 namespace kadr {
 namespace {
 
-constexpr double kDarkness = 0.01;  // the constant of relative_mse
-
 /// The halves of one pixel.
 struct Pair {
     Film::Color a, b;
@@ -28,7 +26,7 @@ double relative_error(const Pair& p, double a, double b) {
     const double noise = p.noise(a, b), value = p.value(a, b);
     // Of two values of one sign the noise is at most the square of the mean; filters with negative lobes make others.
     const double square = std::max(value * value - noise / 2, value * value / 2);
-    return noise / (square + kDarkness);
+    return noise / (square + kRelativeErrorFloor);
 }
 
 double luminance(const Film::Color& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }

@@ -12,6 +12,9 @@
 
 namespace kadr {
 
+/// What keeps black places from deciding a relative mean square error alone: it is divided by value² + this.
+inline constexpr double kRelativeErrorFloor = 0.01;
+
 /// The relative mean square error of a picture as it is known from the picture alone.
 struct ErrorEstimate {
     bool known = false;                      ///< both halves have samples somewhere

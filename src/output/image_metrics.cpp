@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "film/error_estimate.h"
+
 namespace kadr {
 namespace {
-
-constexpr double kDarkness = 0.01;  // the constant of relative_mse
 
 /// Where R, G and B are.
 std::array<std::size_t, 3> color_channels(const Image& image) {
@@ -95,7 +95,7 @@ double relative_mse(const Image& reference, const Image& test) {
         for (std::size_t c = 0; c < 3; ++c) {
             const double expected = reference.pixels[i * reference.channels.size() + r[c]];
             const double difference = test.pixels[i * test.channels.size() + t[c]] - expected;
-            sum += difference * difference / (expected * expected + kDarkness);
+            sum += difference * difference / (expected * expected + kRelativeErrorFloor);
         }
     return pixels == 0 ? 0 : sum / (3.0 * static_cast<double>(pixels));
 }

@@ -94,8 +94,9 @@ Metadata shot_metadata(const Shot& shot, const std::string& device_name) {
     if (render.clamp_direct) metadata["clamp_direct"] = format_number(*render.clamp_direct);
     if (render.clamp_indirect) metadata["clamp_indirect"] = format_number(*render.clamp_indirect);
     if (render.max_error) metadata["max_error"] = format_number(*render.max_error);
-    if (render.max_error || render.time_budget_s) metadata["samples_at_least"] = std::to_string(render.at_least);
+    if (render.max_error || render.time_budget_s || render.time_budget_shot_s) metadata["samples_at_least"] = std::to_string(render.at_least);
     if (render.time_budget_s) metadata["time_budget_s"] = format_number(*render.time_budget_s);
+    if (render.time_budget_shot_s) metadata["time_budget_shot_s"] = format_number(*render.time_budget_shot_s);
     return metadata;
 }
 

@@ -104,7 +104,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
         metered_frame_ = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
     identity_.emplace(*loaded_, metered_frame_);
     renderer_.emplace(*device_.device);
-    budget_ = ShotBudget(options.time_budget_s, [this] { return total_.seconds(); });
+    budget_ = ShotBudget(loaded_->shot().render.time_budget_shot_s, [this] { return total_.seconds(); });
     summary_.device = device_.device->name();
     summary_.device_why = device_.why;
     summary_.times.load = total_.seconds();

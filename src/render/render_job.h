@@ -21,8 +21,6 @@ struct RenderOptions {
     ShotOverrides overrides;
     DeviceRequest device;
     bool overwrite = false;
-    /// Wall time for all frames of the shot that have to be rendered; absent: as long as it takes.
-    std::optional<double> time_budget_s;
     /// Video file where neither the shot nor the overrides name one; "{name}" is the shot's name. Empty: none.
     std::string default_video;
 };

@@ -160,9 +160,4 @@ int SampleSteering::next_round(const Film& film) {
     return count;
 }
 
-double SampleSteering::progress() const {
-    const double by_count = static_cast<double>(so_far_) / render_.samples;
-    return std::min(1.0, std::isfinite(budget_s_) ? std::max(by_count, clock_() / budget_s_) : by_count);
-}
-
 }  // namespace kadr

@@ -50,8 +50,6 @@ public:
     /// [y][x], 0: done; null: all pixels go on.
     const std::uint8_t* active() const { return active_.empty() ? nullptr : active_.data(); }
     int samples_so_far() const { return so_far_; }
-    /// How much of the work is done, as far as it can be told, in [0, 1].
-    double progress() const;
     SamplingStop stopped_by() const { return stop_; }
     /// Replaces the wall time for the frame (of a budget for the whole shot).
     void set_budget(double seconds) { budget_s_ = seconds; }

@@ -151,7 +151,7 @@ public:
     /// A number of samples, or what decides it. `--max-error` keeps the file's number as the most: it makes a render cheaper,
     /// never dearer. A time budget is there to be used: the number of a file does not end it.
     void put_samples(const ShotOverrides& overrides) {
-        const bool steered = !overrides.max_error.empty() || !overrides.time_budget.empty();
+        const bool steered = !overrides.max_error.empty() || !overrides.time_budget.empty() || !overrides.time_budget_shot.empty();
         const std::string most = overrides.samples > 0 ? std::to_string(overrides.samples) : std::string();
         if (!steered) {
             if (!most.empty()) put_text("--samples", "render.samples", most, false);
@@ -162,10 +162,12 @@ public:
         if (samples && !samples->is_map()) {
             const YamlNode number = *samples;
             *samples = map_node(number.place);
-            if (most.empty() && overrides.time_budget.empty()) put_node_at("render.samples.at_most", number);
+            if (most.empty() && overrides.time_budget.empty() && overrides.time_budget_shot.empty()) put_node_at("render.samples.at_most", number);
         }
         if (!most.empty()) put_text("--samples", "render.samples.at_most", most, false);
         if (!overrides.max_error.empty()) put_text("--max-error", "render.samples.max_error", overrides.max_error, false);
+        if (!overrides.time_budget_shot.empty())
+            put_text("--time-budget-shot", "render.samples.time_budget_shot", overrides.time_budget_shot, false);
         if (!overrides.time_budget.empty()) put_text("--time-budget", "render.samples.time_budget", overrides.time_budget, false);
     }
     /// Replaces the file's video; its codec and quality stay where the new file has the same ending.

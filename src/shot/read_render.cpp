@@ -22,14 +22,15 @@ void read_samples(const Section& section, RenderSpec& render) {
     if (!samples || !samples.node->is_map()) return assign(render.samples, read_integer(samples));
     const Section map = section.section("samples");
     if (samples.node->entries.empty()) return samples.mismatch();
-    if (!map.present() || !(map["max_error"] || map["time_budget"] || map["at_least"] || map["at_most"])) return;
+    if (!map.present() || !(map["max_error"] || map["time_budget"] || map["time_budget_shot"] || map["at_least"] || map["at_most"])) return;
     render.max_error = read_number(map["max_error"]);
     render.time_budget_s = read_number(map["time_budget"]);
+    render.time_budget_shot_s = read_number(map["time_budget_shot"]);
     render.samples = kDefaultMost;
     assign(render.samples, read_integer(map["at_most"]));
     render.at_least = std::min(render.at_least, render.samples);
     assign(render.at_least, read_integer(map["at_least"]));
-    if (!map["max_error"] && !map["time_budget"])
+    if (!map["max_error"] && !map["time_budget"] && !map["time_budget_shot"])
         samples.error("render.samples has neither max_error nor time_budget",
                       "expected { max_error: 0.01 }, { time_budget: 20 s } or both; a plain number gives every pixel as many samples");
     if (render.at_least > render.samples)

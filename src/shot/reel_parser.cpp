@@ -34,6 +34,9 @@ SplitOverrides split(const ShotOverrides& all) {
     parts.reel.width = all.width;
     parts.reel.height = all.height;
     parts.shots.samples = all.samples;
+    parts.shots.max_error = all.max_error;
+    parts.shots.time_budget = all.time_budget;
+    parts.shots.time_budget_shot = all.time_budget_shot;
     return parts;
 }
 

@@ -140,6 +140,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "render.samples.at_least", .forms = kInteger, .low = 2, .high = 1048576, .fallback = "32", .doc = "samples a pixel before max_error decides", .example = "at_least: 16"},
     {.path = "render.samples.at_most", .forms = kInteger, .low = 2, .high = 1048576, .fallback = "1024", .doc = "most samples a pixel", .example = "at_most: 4096"},
     {.path = "render.samples.time_budget", .forms = kNumber, .quantity = time, .low = 0.01, .high = 1e6, .doc = "wall time a frame may take", .example = "time_budget: 20 s"},
+    {.path = "render.samples.time_budget_shot", .forms = kNumber, .quantity = time, .low = 0.01, .high = 1e9, .doc = "wall time that all frames of the shot may take, dealt by difficulty", .example = "time_budget_shot: 600 s"},
     {.path = "render.bounces", .forms = kInteger | kSection, .low = 0, .high = 1024, .fallback = "8", .doc = "longest path, or a limit a kind; 0 is direct light alone", .example = "bounces: { total: 8, diffuse: 4 }"},
     {.path = "render.bounces.total", .forms = kInteger, .low = 0, .high = 1024, .fallback = "8", .doc = "bounces of any kind", .example = "total: 8"},
     {.path = "render.bounces.diffuse", .forms = kInteger, .low = 0, .high = 1024, .fallback = "the total", .doc = "diffuse bounces", .example = "diffuse: 4"},

@@ -163,11 +163,13 @@ struct RenderSpec {
     int at_least = 32;                       ///< before max_error decides
     std::optional<double> max_error;         ///< standard error of a pixel in values of the display: sample until it is below
     std::optional<double> time_budget_s;     ///< wall time a frame may take
+    std::optional<double> time_budget_shot_s; ///< wall time that all frames may take
     /// A number of samples that nothing but it decides.
     void fix_samples(int count) {
         samples = count;
         max_error.reset();
         time_budget_s.reset();
+        time_budget_shot_s.reset();
     }
     struct Bounces {
         int total = 8, diffuse = 8, glossy = 8, transmission = 8;

@@ -87,7 +87,7 @@ private:
         (*this)(e.image.has_value(), e.color, e.strength, e.rotate_rad, e.visible, e.given);
     }
     void add(const RenderSpec& r) {
-        (*this)(r.integrator, r.samples, r.at_least, r.max_error, r.time_budget_s, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission,
+        (*this)(r.integrator, r.samples, r.at_least, r.max_error, r.time_budget_s, r.time_budget_shot_s, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission,
                 r.filter, r.filter_width_px, r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed,
                 r.seed_animated, r.cull_backfaces);
     }

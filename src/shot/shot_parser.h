@@ -22,6 +22,7 @@ struct ShotOverrides {
     int samples = 0;                                       ///< 0: the file's; with one of the next two: the most
     std::string max_error;                                 ///< render.samples.max_error; empty: the file's
     std::string time_budget;                               ///< render.samples.time_budget, "20 s"; empty: the file's
+    std::string time_budget_shot;                          ///< render.samples.time_budget_shot, "600 s"; empty: the file's
     int width = 0, height = 0;                             ///< 0: the file's
 };
 

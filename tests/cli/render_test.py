@@ -44,6 +44,11 @@ class Render(ProgramTest):
         (self.folder / "ball.gltf").write_text((self.folder / "ball.gltf").read_text() + "\n")
         self.assertEqual(self.summary(self.shot, "--samples", "5")["reused"], 0)
 
+    def test_a_steered_frame_is_not_taken_for_a_full_one(self):
+        self.assertNotIn("samples", self.summary(self.shot, "--time-budget-shot", "1s")["stopped_by"])
+        self.assertEqual(self.summary(self.shot)["reused"], 0)
+        self.assertEqual(self.summary(self.shot, "--max-error", "0.5")["reused"], 0)
+
     def test_determinism(self):
         patterns = {threads: f"t{threads}/{{name}}.{{frame:04}}.png" for threads in (1, 2, 7)}
         for threads, pattern in patterns.items():

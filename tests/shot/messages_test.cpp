@@ -98,22 +98,22 @@ image: { size: [3, 4] })",
          R"(shot.yaml:4:20: error: render.samples is 'many'
     render: { samples: many }
                        ^~~~
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)"},
         {std::string(kBase) + R"(render: { samples: 0 })",
          R"(shot.yaml:4:20: error: render.samples is 0
     render: { samples: 0 }
                        ^
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)"},
         {std::string(kBase) + R"(render: { samples: 1.5 })",
          R"(shot.yaml:4:20: error: render.samples is 1.5
     render: { samples: 1.5 }
                        ^~~
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)"},
         {std::string(kBase) + R"(render: { samples: [1] })",
          R"(shot.yaml:4:20: error: render.samples is a list of 1
     render: { samples: [1] }
                        ^~~
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)"},
         {std::string(kBase) + R"(render: 5)",
          R"(shot.yaml:4:9: error: render is 5
     render: 5
@@ -481,7 +481,7 @@ shot.yaml:4:69: error: render.seed is -1
          R"(shot.yaml:4:20: error: render.samples is a map
     render: { samples: { keys: { 0 s: 1 } } }
                        ^~~~~~~~~~~~~~~~~~~~
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget; this value cannot change over time)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot; this value cannot change over time)"},
         {std::string(kBase) + R"(view: { transform: filmic, exposure: { iso: 100 } })",
          R"(shot.yaml:4:20: error: view.transform is 'filmic'
     view: { transform: filmic, exposure: { iso: 100 } }

@@ -32,7 +32,7 @@ TEST_F(Overrides, ReplaceAndAddValues) {
 TEST_F(Overrides, AreNamedInMessages) {
     EXPECT_EQ(
         errors("render.samples", "many"),
-        "--set render.samples=many: error: render.samples is 'many'\n  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget");
+        "--set render.samples=many: error: render.samples is 'many'\n  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot");
     EXPECT_EQ(errors("render.sampels", "3"),
               "--set render.sampels=3: error: unknown key 'sampels' in render\n  did you mean 'samples'?");
     EXPECT_EQ(errors("lights.kye.intensity", "3", kLights),

@@ -121,7 +121,7 @@ TEST_F(ReelTest, SaysWhatIsWrong) {
          R"(reel.yaml:2:51: error: render.samples is 0
     shots: [ { shot: one.yaml, set: { render.samples: 0 } } ]
                                                       ^
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)"},
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)"},
         {"shots: [ one.yaml ]\noutput: { frames: \"a.{frame}.exr\" }\n",
          R"(reel.yaml:3:19: error: output.frames is 'a.{frame}.exr'
     output: { frames: "a.{frame}.exr" }
@@ -178,7 +178,7 @@ reel.yaml:2:54: error: shots.2.hold is 1 m
 bad.yaml:4:20: error: render.samples is 0
     render: { samples: 0 }
                        ^
-  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget)");
+  expected a whole number from 1 to 1048576 or a map of max_error, at_least, at_most, time_budget, time_budget_shot)");
 }
 
 TEST_F(ReelTest, AnEmptyFileIsNoReel) {
