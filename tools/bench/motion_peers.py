@@ -6,8 +6,9 @@
 Both render spin at 320×180, 64 samples, 4 bounces, box filter, a shutter of half a frame around the frame's time. Cycles
 samples the way at the opening, the frame's time and the closing. The file's keys lie at whole frames only, and between them
 Blender mixes the quaternions' components, where glTF asks for the arc at constant speed: up to 3 % less of a turn at a
-quarter of the way. So the keys are first refined to quarter frames along the arc (--as-it-is leaves them alone): at the
-times that Cycles looks at, both then read a key, and the motion steps are the same.
+quarter of the way. So the keys are first refined to quarter frames along the arc: at the times that Cycles looks at, both
+then read a key, and the motion steps are the same. That the difference with the file's own keys (--keys file) is this
+mixing and nothing else shows --keys mixed: Cycles gets the file as it is, Kadr the quarters that Blender makes of it.
 
 How long a blur is cannot be read off two noisy images pixel by pixel. It is fitted: with many samples Kadr renders the
 frame, the frame with a shutter that is longer and shorter by 0.1 frames, and one that opens earlier and later by 0.05.
@@ -91,24 +92,28 @@ class Glb:
                          + struct.pack("<II", len(self.blob), 0x004E4942) + self.blob)
 
 
-def between(a, b, u):
-    """Rows of a mixed with rows of b: quaternions along the shorter arc, all else linearly."""
+def between(a, b, u, arc=True):
+    """Rows of a mixed with rows of b: quaternions along the shorter arc (or by their components, then normalised), all else
+    linearly."""
     import numpy as np
     if a.shape[1] != 4:
         return a + (b - a) * u
     cosine = (a * b).sum(axis=1, keepdims=True)
+    if not arc:
+        mixed = a + (b * np.sign(cosine) - a) * u
+        return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
     b, angle = b * np.sign(cosine), np.arccos(np.minimum(np.abs(cosine), 1))
     sine = np.where(angle > 1e-6, np.sin(angle), 1)
     mixed = np.where(angle > 1e-6, (a * np.sin((1 - u) * angle) + b * np.sin(u * angle)) / sine, a)
     return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
 
 
-def refine_keys(glb, pieces=4):
-    """Puts keys between the linear keys of every channel."""
+def refine_keys(glb, arc, pieces=4):
+    """Puts keys between the linear keys of every channel; quaternions as between() does."""
     import numpy as np
 
     def refined(values):
-        steps = [between(values[:-1], values[1:], k / pieces) for k in range(pieces)]
+        steps = [between(values[:-1], values[1:], k / pieces, arc) for k in range(pieces)]
         return np.concatenate([np.stack(steps, axis=1).reshape(-1, values.shape[1]), values[-1:]])
     for sampler in glb.json["animations"][0]["samplers"]:
         assert sampler.get("interpolation", "LINEAR") == "LINEAR"
@@ -120,18 +125,23 @@ class Renderers:
     def __init__(self, options, peers, folder):
         self.options, self.peers, self.folder = options, peers, folder
         self.side = json.loads((peers / "scenes" / "spin.json").read_text())
-        self.scene = folder / "spin.glb"
-        (folder / "spin.json").write_text(json.dumps(self.side))
-        glb = Glb(peers / "scenes" / "spin.glb")
-        self.tip_px = fastest_tip_px(glb)
-        if not options.as_it_is:
-            refine_keys(glb)
-        glb.write(self.scene)
+        self.tip_px = fastest_tip_px(Glb(peers / "scenes" / "spin.glb"))
+        self.kadr_scene = self.scene("kadr", {"refined": "arc", "file": None, "mixed": "components"}[options.keys])
+        self.cycles_scene = self.scene("cycles", "arc" if options.keys == "refined" else None)
+
+    def scene(self, name, between_keys):
+        path = self.folder / f"{name}.glb"
+        path.with_suffix(".json").write_text(json.dumps(self.side))
+        glb = Glb(self.peers / "scenes" / "spin.glb")
+        if between_keys:
+            refine_keys(glb, between_keys == "arc")
+        glb.write(path)
+        return path
 
     def kadr(self, samples, seed, length=SHUTTER, middle=0.0):
         image = self.folder / f"kadr_{samples}_{seed}_{length}_{middle}.exr"
         shot = image.with_suffix(".yaml")
-        shot.write_text(SHOT.format(frame=FRAME, width=WIDTH, height=HEIGHT, gltf=self.scene,
+        shot.write_text(SHOT.format(frame=FRAME, width=WIDTH, height=HEIGHT, gltf=self.kadr_scene,
                                     camera=self.side["camera"], open=middle - length / 2, close=middle + length / 2,
                                     background=", ".join(str(x) for x in self.side["background"]), samples=samples,
                                     bounces=BOUNCES, seed=seed, image=image))
@@ -140,7 +150,7 @@ class Renderers:
 
     def cycles(self, samples, seed):
         image = self.folder / f"cycles_{samples}_{seed}.exr"
-        run([self.options.python, self.peers / "cycles_render.py", self.scene, "--out", image,
+        run([self.options.python, self.peers / "cycles_render.py", self.cycles_scene, "--out", image,
              "--spp", samples, "--res", f"{WIDTH}x{HEIGHT}", "--frames", FRAME, "--max-bounces", BOUNCES,
              "--motion-blur", SHUTTER, "--shutter-position", "CENTER", "--seed", seed])
         return read_image(image)
@@ -199,7 +209,8 @@ def main():
     parser.add_argument("--python", required=True, type=pathlib.Path, help="interpreter with bpy, numpy and OpenImageIO")
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--reference-samples", type=int, default=512)
-    parser.add_argument("--as-it-is", action="store_true", help="keys at whole frames only, as the file has them")
+    parser.add_argument("--keys", choices=("refined", "file", "mixed"), default="refined",
+                        help="quarter frames along the arc for both; the file's own for both; Blender's mix of them for Kadr")
     parser.add_argument("--output", type=pathlib.Path, help="JSON report")
     options = parser.parse_args()
     peers = pathlib.Path(os.environ.get("KADR_PEERS", ROOT.parent / "shared" / "peers")).resolve()
@@ -221,7 +232,7 @@ def compare(renderers, options):
     middle, changes = derivatives(renderers.kadr, options.reference_samples)
     tip_px = renderers.tip_px
     images = {"kadr": renderers.kadr(options.samples, 1), "cycles": renderers.cycles(options.samples, 1)}
-    report = {"frame": FRAME, "samples": options.samples, "shutter_frames": SHUTTER, "tip_px_per_frame": round(tip_px, 2),
+    report = {"keys": renderers.options.keys, "frame": FRAME, "samples": options.samples, "shutter_frames": SHUTTER, "tip_px_per_frame": round(tip_px, 2),
               "mean": {name: image.mean() for name, image in images.items()}}
     units = (tip_px, tip_px, 1, 1)  # frames to pixels of the fastest tip; pixels
     for name, image in images.items():
