@@ -1,6 +1,7 @@
 #include "frame/deform_fit.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
@@ -68,44 +69,83 @@ double pixels_a_unit(const Deformer& deformer, const DeformationPose& pose, cons
     return worst;
 }
 
-using Vertices = std::vector<kernels::Vertex>;
+constexpr std::size_t kBlock = 2048;  // vertices: their positions in five poses stay in the cache
 
-Vertices vertices_of(const GeometryData& geometry, const Deformer& deformer, const DeformationPose& pose) {
-    Vertices vertices(geometry.positions.size());
-    deform_vertices(geometry, VertexPose(pose, deformer.skinning), vertices, {});
-    return vertices;
-}
+using Positions = std::vector<kernels::Vec3f>;
 
 glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
 
-double vertex_pixels(const Vertices& a, const Vertices& b, const Vertices& is, double u, const glm::dmat4& world, const PixelScale& scale) {
-    const double nearest = std::max(kBesideCamera * frobenius(world), 1e-30);
+/// The way of a block of vertices from one key to the next, against their places at one time between.
+class BlockError {
+public:
+    BlockError(const DeformationView& view) : view_(view) {}
+    /// A bound by the block's box first, for a few operations a vertex; the vertices one by one where that is too much.
+    double pixels(const Positions& a, const Positions& b, const Positions& is, std::size_t pose) const {
+        const float u = 0.25f * static_cast<float>(pose % 4);
+        glm::vec3 low(INFINITY), high(-INFINITY);
+        float missed = 0;
+        for (std::size_t v = 0; v < is.size(); ++v) {
+            const kernels::Vec3f apart = is[v] - (a[v] * (1 - u) + b[v] * u);
+            missed = std::max(missed, dot(apart, apart));
+            const glm::vec3 at(is[v].x, is[v].y, is[v].z);
+            low = glm::min(low, at), high = glm::max(high, at);
+        }
+        double worst = 0;
+        for (const glm::dmat4& world : view_.world_from_deformed) {
+            const double bound = bound_px(std::sqrt(missed), low, high, world, view_.scales[pose]);
+            const bool suffices = bound <= view_.enough_px && std::isfinite(view_.enough_px);  // else the figure itself is wanted
+            worst = std::max(worst, suffices ? bound : exact_px(a, b, is, u, world, view_.scales[pose]));
+        }
+        return worst;
+    }
+
+private:
+    static double nearest(const glm::dmat4& world) { return std::max(kBesideCamera * frobenius(world), 1e-30); }
+    static double bound_px(double missed, const glm::dvec3& low, const glm::dvec3& high, const glm::dmat4& world, const PixelScale& scale) {
+        const glm::dvec3 centre = glm::dvec3(world * glm::dvec4(0.5 * (low + high), 1));
+        return scale.most_pixels(frobenius(world) * missed, centre, frobenius(world) * 0.5 * glm::length(high - low), nearest(world));
+    }
+    static double exact_px(const Positions& a, const Positions& b, const Positions& is, double u, const glm::dmat4& world, const PixelScale& scale) {
+        double worst = 0;
+        for (std::size_t v = 0; v < is.size(); ++v) {
+            const glm::dvec3 wanted = to_double(is[v]), missed = wanted - glm::mix(to_double(a[v]), to_double(b[v]), u);
+            worst = std::max(worst, scale.pixels(glm::length(glm::dmat3(world) * missed), glm::dvec3(world * glm::dvec4(wanted, 1)), nearest(world)));
+        }
+        return worst;
+    }
+
+    const DeformationView& view_;
+};
+
+double block_error_px(const GeometryData& geometry, std::span<const VertexPose> poses, std::size_t begin, std::size_t end, const DeformationView& view) {
+    const BlockError error(view);
+    Positions a(end - begin), b(end - begin), is(end - begin);
+    deform_positions(geometry, poses[0], begin, a);
+    double worst = 0;
+    for (std::size_t from = 0; from + 4 < poses.size() && worst <= view.enough_px; from += 4, std::swap(a, b)) {
+        deform_positions(geometry, poses[from + 4], begin, b);
+        for (std::size_t i = from + 1; i < from + 4 && worst <= view.enough_px; ++i) {
+            deform_positions(geometry, poses[i], begin, is);
+            worst = std::max(worst, error.pixels(a, b, is, i));
+        }
+    }
+    return worst;
+}
+
+double vertex_error_px(const GeometryData& geometry, const Deformer& deformer, std::span<const DeformationPose> poses, const DeformationView& view) {
+    std::vector<VertexPose> vertex_poses;
+    for (const DeformationPose& pose : poses) vertex_poses.emplace_back(pose, deformer.skinning);
+    std::atomic<bool> enough = false;
     return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, is.size(), 4096), 0.0,
+        tbb::blocked_range<std::size_t>(0, geometry.positions.size(), kBlock), 0.0,
         [&](const auto& range, double worst) {
-            for (std::size_t v = range.begin(); v < range.end(); ++v) {
-                const glm::dvec3 wanted = to_double(is[v].position);
-                const glm::dvec3 missed = wanted - glm::mix(to_double(a[v].position), to_double(b[v].position), u);
-                worst = std::max(worst, scale.pixels(glm::length(glm::dmat3(world) * missed), glm::dvec3(world * glm::dvec4(wanted, 1)), nearest));
+            for (std::size_t begin = range.begin(); begin < range.end() && !enough; begin += kBlock) {
+                worst = std::max(worst, block_error_px(geometry, vertex_poses, begin, std::min(begin + kBlock, range.end()), view));
+                if (worst > view.enough_px) enough = true;
             }
             return worst;
         },
         [](double a_px, double b_px) { return std::max(a_px, b_px); });
-}
-
-double vertex_error_px(const GeometryData& geometry, const Deformer& deformer, std::span<const DeformationPose> poses, const DeformationView& view) {
-    double worst = 0;
-    Vertices a = vertices_of(geometry, deformer, poses[0]);
-    for (std::size_t from = 0; from + 4 < poses.size() && worst <= view.enough_px; from += 4) {
-        Vertices b = vertices_of(geometry, deformer, poses[from + 4]);
-        for (std::size_t i = 1; i < 4; ++i) {
-            const Vertices is = vertices_of(geometry, deformer, poses[from + i]);
-            for (const glm::dmat4& world : view.world_from_deformed)
-                worst = std::max(worst, vertex_pixels(a, b, is, 0.25 * static_cast<double>(i), world, view.scales[from + i]));
-        }
-        a = std::move(b);
-    }
-    return worst;
 }
 
 double joint_error_px(const Deformer& deformer, std::span<const DeformationPose> poses, const DeformationView& view) {

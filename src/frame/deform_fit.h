@@ -16,8 +16,8 @@ struct DeformationView {
 };
 
 /// Largest screen-space distance between a mesh whose vertices go linearly from every fourth pose to the next, and the
-/// mesh in the poses between; stops early once beyond enough_px. An upper bound for linear skinning, exact at the
-/// vertices for dual quaternions.
+/// mesh in the poses between; stops early once beyond enough_px. An upper bound; of dual quaternions at most enough_px where
+/// a bound by blocks of vertices says so, else exact at the vertices.
 double deformation_error_px(const GeometryData& geometry, const Deformer& deformer, std::span<const DeformationPose> poses, const DeformationView& view);
 
 /// Whether two poses put every vertex at the same place, but for rounding.

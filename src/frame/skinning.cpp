@@ -31,12 +31,20 @@ DualQuaternionJoint to_dual_quaternion(const glm::dmat4& m) {
     DualQuaternionJoint joint;
     const glm::dquat r = parts.rotation;
     const glm::dquat d = glm::dquat(0, parts.translation.x, parts.translation.y, parts.translation.z) * r * 0.5;
-    joint.real = {static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z), static_cast<float>(r.w)};
-    joint.dual = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), static_cast<float>(d.w)};
+    joint.motion = {static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z), static_cast<float>(r.w),
+                    static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), static_cast<float>(d.w)};
     parts.rotation = glm::dquat(1, 0, 0, 0);
     parts.translation = glm::dvec3(0);
     joint.stretch = to_affine(compose(parts));
     return joint;
+}
+
+/// Whether a stretch is the identity but for the rounding of its numbers.
+bool is_identity(const Affine& stretch) {
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            if (!(std::abs(stretch.m[row][column] - (row == column ? 1.0f : 0.0f)) <= 1e-7f)) return false;
+    return true;
 }
 
 Vec3f point(const Affine& a, Vec3f p) {
@@ -71,34 +79,38 @@ Affine blend(std::span<const Affine> joints, const std::uint16_t* joint, const f
     return sum;
 }
 
-/// A blended rigid motion as a matrix, with the blended stretch before it.
-Affine blend(std::span<const DualQuaternionJoint> joints, const std::uint16_t* joint, const float* weight, int slots) {
+/// A blended rigid motion as a matrix.
+Affine rigid_blend(std::span<const DualQuaternionJoint> joints, const std::uint16_t* joint, const float* weight, int slots) {
     float q[8] = {};
-    Affine stretch{};
     const DualQuaternionJoint& pivot = joints[joint[0]];
     for (int slot = 0; slot < slots && weight[slot] > 0; ++slot) {
         const DualQuaternionJoint& from = joints[joint[slot]];
         float cosine = 0;
-        for (int i = 0; i < 4; ++i) cosine += pivot.real[static_cast<std::size_t>(i)] * from.real[static_cast<std::size_t>(i)];
+        for (int i = 0; i < 4; ++i) cosine += pivot.motion[static_cast<std::size_t>(i)] * from.motion[static_cast<std::size_t>(i)];
         const float w = cosine < 0 ? -weight[slot] : weight[slot];  // q and -q are one rotation: take the nearer
-        for (int i = 0; i < 4; ++i) {
-            q[i] += w * from.real[static_cast<std::size_t>(i)];
-            q[4 + i] += w * from.dual[static_cast<std::size_t>(i)];
-        }
-        for (int i = 0; i < 12; ++i) (&stretch.m[0][0])[i] += weight[slot] * (&from.stretch.m[0][0])[i];
+        for (int i = 0; i < 8; ++i) q[i] += w * from.motion[static_cast<std::size_t>(i)];
     }
     const float scale = 1.0f / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     for (float& value : q) value *= scale;
     const float x = q[0], y = q[1], z = q[2], w = q[3];
-    const Vec3f rows[3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                           {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                           {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
     const Vec3f r{x, y, z}, d{q[4], q[5], q[6]};
     const Vec3f t = (d * w - r * q[7] + cross(r, d)) * 2.0f;
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t.x},
+             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t.y},
+             {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t.z}}};
+}
+
+/// A blended rigid motion, with the blended stretch before it.
+Affine stretched_blend(std::span<const DualQuaternionJoint> joints, const std::uint16_t* joint, const float* weight, int slots) {
+    Affine stretch{};
+    for (int slot = 0; slot < slots && weight[slot] > 0; ++slot)
+        for (int i = 0; i < 12; ++i) (&stretch.m[0][0])[i] += weight[slot] * (&joints[joint[slot]].stretch.m[0][0])[i];
+    const Affine rigid = rigid_blend(joints, joint, weight, slots);
     Affine a;
     for (int row = 0; row < 3; ++row) {
-        for (int c = 0; c < 3; ++c) a.m[row][c] = rows[row].x * stretch.m[0][c] + rows[row].y * stretch.m[1][c] + rows[row].z * stretch.m[2][c];
-        a.m[row][3] = row == 0 ? t.x : row == 1 ? t.y : t.z;
+        const float* r = rigid.m[row];
+        for (int c = 0; c < 3; ++c) a.m[row][c] = r[0] * stretch.m[0][c] + r[1] * stretch.m[1][c] + r[2] * stretch.m[2][c];
+        a.m[row][3] = r[3];
     }
     return a;
 }
@@ -114,12 +126,14 @@ void add(std::vector<Vec3f>& to, const std::vector<V>& differences, const MorphT
     for (std::size_t i = first; i < last; ++i) to[target.vertices[i] - begin] = to[target.vertices[i] - begin] + differences[i] * weight;
 }
 
-Morphed morph(const GeometryData& g, std::span<const float> weights, std::size_t begin, std::size_t end, bool with_tangents) {
+enum class Morphs { positions, with_normals, with_tangents };
+
+Morphed morph(const GeometryData& g, std::span<const float> weights, std::size_t begin, std::size_t end, Morphs what) {
     Morphed block;
     const auto slice = [&](const std::vector<Vec3f>& all) { return all.empty() ? std::vector<Vec3f>{} : std::vector<Vec3f>(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end)); };
     block.positions = slice(g.positions);
-    block.normals = slice(g.normals);
-    for (std::size_t v = begin; with_tangents && v < end; ++v) block.tangents.push_back({g.tangents[v].x, g.tangents[v].y, g.tangents[v].z});
+    if (what != Morphs::positions) block.normals = slice(g.normals);
+    for (std::size_t v = begin; what == Morphs::with_tangents && v < end; ++v) block.tangents.push_back({g.tangents[v].x, g.tangents[v].y, g.tangents[v].z});
     for (std::size_t t = 0; t < std::min(weights.size(), g.targets.size()); ++t) {
         if (weights[t] == 0) continue;
         const MorphTarget& target = g.targets[t];
@@ -132,6 +146,10 @@ Morphed morph(const GeometryData& g, std::span<const float> weights, std::size_t
     return block;
 }
 
+bool weighs(const VertexPose& pose) {
+    return std::any_of(pose.weights().begin(), pose.weights().end(), [](float w) { return w != 0; });
+}
+
 /// The matrix that carries each vertex.
 class Carrier {
 public:
@@ -140,7 +158,7 @@ public:
         if (single_) return pose_.matrices()[0];
         const std::size_t first = vertex * static_cast<std::size_t>(skin_.per_vertex);
         if (pose_.skinning() == Skinning::dual_quaternion)
-            return blend(pose_.dual_quaternions(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
+            return (pose_.stretches() ? stretched_blend : rigid_blend)(pose_.dual_quaternions(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
         return blend(pose_.matrices(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
     }
 
@@ -152,8 +170,8 @@ private:
 
 void deform_block(const GeometryData& g, const VertexPose& pose, std::size_t begin, std::size_t end, std::span<Vertex> vertices, std::span<Vec4f> tangents) {
     const Carrier carrier(g, pose);
-    const bool morphs = std::any_of(pose.weights().begin(), pose.weights().end(), [](float w) { return w != 0; });
-    const Morphed block = morphs ? morph(g, pose.weights(), begin, end, !tangents.empty()) : Morphed{};
+    const bool morphs = weighs(pose);
+    const Morphed block = morphs ? morph(g, pose.weights(), begin, end, tangents.empty() ? Morphs::with_normals : Morphs::with_tangents) : Morphed{};
     const Vec3f* positions = morphs ? block.positions.data() : g.positions.data() + begin;
     const Vec3f* normals = g.normals.empty() ? nullptr : morphs ? block.normals.data() : g.normals.data() + begin;
     for (std::size_t v = begin; v < end; ++v) {
@@ -181,6 +199,7 @@ VertexPose::VertexPose(const DeformationPose& pose, Skinning skinning) : skinnin
         if (skinning == Skinning::dual_quaternion) dual_quaternions_.push_back(to_dual_quaternion(m));
     }
     for (const double weight : pose.weights) weights_.push_back(static_cast<float>(weight));
+    stretches_ = !std::all_of(dual_quaternions_.begin(), dual_quaternions_.end(), [](const DualQuaternionJoint& joint) { return is_identity(joint.stretch); });
 }
 
 void deform_vertices(const GeometryData& geometry, const VertexPose& pose, std::span<Vertex> vertices, std::span<Vec4f> tangents) {
@@ -188,6 +207,13 @@ void deform_vertices(const GeometryData& geometry, const VertexPose& pose, std::
         for (std::size_t begin = range.begin(); begin < range.end(); begin += kBlock)
             deform_block(geometry, pose, begin, std::min(begin + kBlock, range.end()), vertices, tangents);
     });
+}
+
+void deform_positions(const GeometryData& geometry, const VertexPose& pose, std::size_t begin, std::span<Vec3f> positions) {
+    const Carrier carrier(geometry, pose);
+    const Morphed block = weighs(pose) ? morph(geometry, pose.weights(), begin, begin + positions.size(), Morphs::positions) : Morphed{};
+    const Vec3f* from = block.positions.empty() ? geometry.positions.data() + begin : block.positions.data();
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = point(carrier.at(begin + i), from[i]);
 }
 
 }  // namespace kadr

@@ -22,10 +22,10 @@ struct DeformationPose {
     bool operator==(const DeformationPose&) const = default;
 };
 
-/// A rigid motion as a unit dual quaternion, x y z w, after a stretch (scale and shear, linear).
+/// A rigid motion as a unit dual quaternion, after a stretch (scale and shear, linear).
 struct DualQuaternionJoint {
     kernels::Affine stretch;
-    std::array<float, 4> real{}, dual{};
+    std::array<float, 8> motion{};  ///< real part x y z w, dual part x y z w
 };
 
 /// A pose as the vertex loops read it.
@@ -34,6 +34,7 @@ public:
     VertexPose(const DeformationPose& pose, Skinning skinning);
     std::span<const kernels::Affine> matrices() const { return matrices_; }
     std::span<const DualQuaternionJoint> dual_quaternions() const { return dual_quaternions_; }
+    bool stretches() const { return stretches_; }  ///< whether a joint of dual-quaternion skinning does more than move
     std::span<const float> weights() const { return weights_; }
     Skinning skinning() const { return skinning_; }
 
@@ -41,6 +42,7 @@ private:
     Skinning skinning_;
     std::vector<kernels::Affine> matrices_;
     std::vector<DualQuaternionJoint> dual_quaternions_;  ///< filled for dual-quaternion skinning
+    bool stretches_ = false;
     std::vector<float> weights_;
 };
 
@@ -54,5 +56,9 @@ private:
 /// @param tangents  [vertex], or empty where the mesh has none
 void deform_vertices(const GeometryData& geometry, const VertexPose& pose, std::span<kernels::Vertex> vertices,
                      std::span<kernels::Vec4f> tangents);
+
+/// The positions alone of the vertices from `begin` on, bit for bit as deform_vertices puts them, on the calling thread.
+/// @param positions  [vertex - begin], written whole
+void deform_positions(const GeometryData& geometry, const VertexPose& pose, std::size_t begin, std::span<kernels::Vec3f> positions);
 
 }  // namespace kadr

@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "device/device.h"
+#include "frame/deform_fit.h"
 #include "frame/frame_state.h"
 #include "frame/skinning.h"
 #include "frame/snapshot.h"
@@ -47,6 +48,32 @@ void skin_vertices(benchmark::State& state, Skinning skinning) {
 }
 BENCHMARK_CAPTURE(skin_vertices, linear, Skinning::linear)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK_CAPTURE(skin_vertices, dual_quaternion, Skinning::dual_quaternion)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// A segment of an exposure of a mesh that bends by dual quaternions: its fit is measured, its two keys are made.
+void blur_vertices(benchmark::State& state) {
+    const GeometryData geometry = helix();
+    Deformer deformer;
+    deformer.skinning = Skinning::dual_quaternion;
+    Scene scene;
+    scene.nodes.emplace_back();
+    scene.skins.push_back({"", {0}, {glm::dmat4(1)}, 0});
+    deformer.skeleton = Skeleton(scene, 0);
+    std::vector<DeformationPose> poses(5);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        for (std::size_t j = 0; j < kJoints; ++j)
+            poses[i].joints.push_back(glm::rotate(glm::dmat4(1), 0.02 * static_cast<double>(j) + 1e-4 * static_cast<double>(i), glm::dvec3(0, 1, 0)));
+    CameraState camera;
+    camera.position = {0, 0, 5};
+    const std::vector<PixelScale> scales(5, PixelScale(camera, 720));
+    std::vector<kernels::Vertex> vertices(2 * kVertices);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(deformation_error_px(geometry, deformer, poses, {{glm::dmat4(1)}, scales, INFINITY}));
+        for (std::size_t key = 0; key < 2; ++key)
+            deform_vertices(geometry, VertexPose(poses[4 * key], deformer.skinning), std::span(vertices).subspan(key * kVertices, kVertices), {});
+        benchmark::DoNotOptimize(vertices.data());
+    }
+}
+BENCHMARK(blur_vertices)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// Rays through the sample `skin` without motion blur, after its structure was refitted from frame to frame, or built at once.
 void render_bent(benchmark::State& state, bool refitted) {
