@@ -124,13 +124,12 @@ const std::vector<DrivenProperty>& driven_of(const BoundShot& shot) {
 SceneCamera source_at(const BoundShot& shot, double time_s) {
     SceneCamera camera = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(shot.bindings().camera_node)].camera)];
     for (const DrivenProperty& driven : driven_of(shot)) {
-        if (!driven.plays(time_s)) continue;
-        const double value = driven.number(time_s);
-        if (driven.property == Property::camera_yfov) camera.yfov_rad = std::clamp(value, 1e-6, kWidestField);
-        else if (driven.property == Property::camera_xmag) camera.xmag = value;
-        else if (driven.property == Property::camera_ymag) camera.ymag = value;
-        else if (driven.property == Property::camera_znear) camera.znear = std::max(value, 0.0);
-        else if (driven.property == Property::camera_zfar) camera.zfar = std::max(value, 0.0);
+        const auto value = [&](double own) { return driven.value(own, time_s, 0); };
+        if (driven.property == Property::camera_yfov) camera.yfov_rad = std::clamp(value(camera.yfov_rad), 1e-6, kWidestField);
+        else if (driven.property == Property::camera_xmag) camera.xmag = value(camera.xmag);
+        else if (driven.property == Property::camera_ymag) camera.ymag = value(camera.ymag);
+        else if (driven.property == Property::camera_znear) camera.znear = std::max(value(camera.znear), 0.0);
+        else if (driven.property == Property::camera_zfar) camera.zfar = std::max(driven.distance(camera.zfar, time_s, 0), 0.0);
     }
     return camera;
 }
@@ -281,7 +280,7 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
         add(key_times(shot.shot().scenes[static_cast<std::size_t>(shot.scene_of(reference))].transform, open_s, close_s));
     };
     if (bindings.camera_node >= 0) add(bindings.rig.key_times_of(bindings.camera_node, open_s, close_s));
-    for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s));
+    for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s, 0));
     if (spec.around) add_node(*spec.around);
     if (const auto* node = std::get_if<NodeReference>(&spec.look_at); node && !spec.gltf) add_node(*node);
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
@@ -345,7 +344,7 @@ std::vector<double> camera_discontinuities(const BoundShot& shot, double begin_s
         times.insert(times.end(), jumps.begin(), jumps.end());
     });
     for (const DrivenProperty& driven : driven_of(shot)) {
-        const std::vector<double> jumps = driven.discontinuities(begin_s, end_s);
+        const std::vector<double> jumps = driven.discontinuities(begin_s, end_s, 0);
         times.insert(times.end(), jumps.begin(), jumps.end());
     }
     return times;

@@ -37,7 +37,7 @@ std::vector<double> corners_of(const Track<T>& track, double begin_s, double end
     return times;
 }
 
-std::vector<WeightedRotation> rotations_at(const LayeredTrack<glm::dquat>& track, Layers layers, double time_s, double clip_offset_s) {
+std::vector<WeightedRotation> rotations_at(const LayeredTrack<glm::dquat>& track, const glm::dquat& own, Layers layers, double time_s, double clip_offset_s) {
     std::vector<WeightedRotation> rotations;
     double sum = 0;
     for (const auto& part : track.parts) {
@@ -47,7 +47,7 @@ std::vector<WeightedRotation> rotations_at(const LayeredTrack<glm::dquat>& track
         rotations.push_back({weight, evaluate(*part.track, layer.clip_time(time_s, clip_offset_s))});
         sum += weight;
     }
-    if (sum < 1 - kNothing || rotations.empty()) rotations.push_back({1 - sum, track.rest});
+    if (sum < 1 - kNothing || rotations.empty()) rotations.push_back({1 - sum, own});
     return rotations;
 }
 
@@ -168,15 +168,19 @@ private:
 
 }  // namespace
 
-
 template <class T>
 T evaluate(const LayeredTrack<T>& track, Layers layers, double time_s, double clip_offset_s) {
-    if (track.parts.empty()) return track.rest;
+    return evaluate(track, track.rest, layers, time_s, clip_offset_s);
+}
+
+template <class T>
+T evaluate(const LayeredTrack<T>& track, const T& own, Layers layers, double time_s, double clip_offset_s) {
+    if (track.parts.empty()) return own;
     if (track.parts.size() == 1)  // the usual case
         if (const PlayingLayer& layer = layer_of<T>(track.parts[0], layers); layer.weight_at(time_s) >= 1)
             return evaluate(*track.parts[0].track, layer.clip_time(time_s, clip_offset_s));
     if constexpr (kIsRotation<T>) {
-        return mean_rotation(rotations_at(track, layers, time_s, clip_offset_s));
+        return mean_rotation(rotations_at(track, own, layers, time_s, clip_offset_s));
     } else {
         T value{};
         double sum = 0;
@@ -187,7 +191,7 @@ T evaluate(const LayeredTrack<T>& track, Layers layers, double time_s, double cl
             value += evaluate(*part.track, layer.clip_time(time_s, clip_offset_s)) * weight;
             sum += weight;
         }
-        return sum < 1 ? value + track.rest * (1 - sum) : value / sum;
+        return sum < 1 ? value + own * (1 - sum) : value / sum;
     }
 }
 
@@ -277,6 +281,7 @@ void add_steps(const Track<T>& track, const LayerWindow& window, std::vector<dou
 
 #define KADR_LAYERED_TRACK_OF(T)                                                                        \
     template T evaluate(const LayeredTrack<T>&, Layers, double, double);                                \
+    template T evaluate(const LayeredTrack<T>&, const T&, Layers, double, double);                      \
     template void add_part(LayeredTrack<T>&, int, const Track<T>&);                                     \
     template void simplify(LayeredTrack<T>&, Layers);                                                   \
     template void add_key_times(const LayeredTrack<T>&, LayerWindows, std::vector<double>&);            \

@@ -28,6 +28,9 @@ using LayerWindows = std::span<const LayerWindow>;  ///< parallel to the layers
 
 template <class T>
 T evaluate(const LayeredTrack<T>& track, Layers layers, double time_s, double clip_offset_s);
+/// The same with `own` as the property's own value.
+template <class T>
+T evaluate(const LayeredTrack<T>& track, const T& own, Layers layers, double time_s, double clip_offset_s);
 
 /// Adds the track of a layer; of two tracks of one layer the later counts.
 template <class T>

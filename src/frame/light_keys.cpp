@@ -84,12 +84,12 @@ const std::vector<DrivenProperty>& driven_of(const BoundShot& shot, int node) {
 SceneLight source_at(const BoundShot& shot, int node, double time_s) {
     SceneLight light = shot.scene().lights[static_cast<std::size_t>(light_of(shot, node))];
     for (const DrivenProperty& driven : driven_of(shot, node)) {
-        if (!driven.plays(time_s)) continue;
-        if (driven.property == Property::light_color) light.color = glm::max(driven.triple(time_s), glm::dvec3(0));
-        else if (driven.property == Property::light_intensity) light.intensity = std::max(driven.number(time_s), 0.0);
-        else if (driven.property == Property::light_range) light.range_m = std::max(driven.number(time_s), 0.0);
-        else if (driven.property == Property::light_inner) light.inner_rad = std::max(driven.number(time_s), 0.0);
-        else if (driven.property == Property::light_outer) light.outer_rad = std::clamp(driven.number(time_s), 0.0, 0.5 * std::numbers::pi);
+        const auto value = [&](const auto& own) { return driven.value(own, time_s, 0); };
+        if (driven.property == Property::light_color) light.color = glm::max(value(light.color), glm::dvec3(0));
+        else if (driven.property == Property::light_intensity) light.intensity = std::max(value(light.intensity), 0.0);
+        else if (driven.property == Property::light_range) light.range_m = std::max(driven.distance(light.range_m, time_s, 0), 0.0);
+        else if (driven.property == Property::light_inner) light.inner_rad = std::max(value(light.inner_rad), 0.0);
+        else if (driven.property == Property::light_outer) light.outer_rad = std::clamp(value(light.outer_rad), 0.0, 0.5 * std::numbers::pi);
     }
     return light;
 }
@@ -227,7 +227,7 @@ std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, 
 
 std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, double open_s, double close_s) {
     std::vector<double> times = shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.copy ? seed.copy->clip_offset_s : 0);
-    for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.key_times(open_s, close_s));
+    for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.key_times(open_s, close_s, 0));
     return times;
 }
 
@@ -255,7 +255,7 @@ std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s,
     for (const LightSpec& spec : shot.shot().lights)
         visit_tracks(spec, [&](const auto& track) { append(times, discontinuities(track, begin_s, end_s)); });
     for (const LightSeed& seed : shot.bindings().lights)
-        for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.discontinuities(begin_s, end_s));
+        for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.discontinuities(begin_s, end_s, 0));
     return times;
 }
 

@@ -43,23 +43,26 @@ float clamped(double value) { return static_cast<float>(std::clamp(value, 0.0, 1
 
 void Factors::set(const DrivenProperty& driven, double time_s) {
     TextureTransform& transform = source.transforms[static_cast<std::size_t>(driven.use)];
+    const auto value = [&]<class T>(const T& own) { return driven.value(own, time_s, 0); };
+    const auto replace = [&](float& factor) { factor = static_cast<float>(value(static_cast<double>(factor))); };
+    const auto replace_share = [&](float& factor) { factor = clamped(value(static_cast<double>(factor))); };
     switch (driven.property) {
         case Property::base_color: {
-            const glm::dvec3 color = driven.triple(time_s);
+            const glm::dvec3 color = value(glm::dvec3(material.base_color.x, material.base_color.y, material.base_color.z));
             material.base_color = {clamped(color.x), clamped(color.y), clamped(color.z)};
             return;
         }
-        case Property::alpha: material.alpha = clamped(driven.number(time_s)); return;
-        case Property::metallic: material.metallic = clamped(driven.number(time_s)); return;
-        case Property::roughness: material.roughness = clamped(driven.number(time_s)); return;
-        case Property::emissive: source.emissive = driven.triple(time_s); return;
-        case Property::emissive_strength: source.emissive_strength = driven.number(time_s); return;
-        case Property::alpha_cutoff: material.alpha_cutoff = static_cast<float>(driven.number(time_s)); return;
-        case Property::normal_scale: material.normal_scale = static_cast<float>(driven.number(time_s)); return;
-        case Property::occlusion_strength: material.occlusion_strength = clamped(driven.number(time_s)); return;
-        case Property::texture_offset: transform.offset = driven.pair(time_s); return;
-        case Property::texture_rotation: transform.rotation_rad = driven.number(time_s); return;
-        case Property::texture_scale: transform.scale = driven.pair(time_s); return;
+        case Property::alpha: return replace_share(material.alpha);
+        case Property::metallic: return replace_share(material.metallic);
+        case Property::roughness: return replace_share(material.roughness);
+        case Property::emissive: source.emissive = value(source.emissive); return;
+        case Property::emissive_strength: source.emissive_strength = value(source.emissive_strength); return;
+        case Property::alpha_cutoff: return replace(material.alpha_cutoff);
+        case Property::normal_scale: return replace(material.normal_scale);
+        case Property::occlusion_strength: return replace_share(material.occlusion_strength);
+        case Property::texture_offset: transform.offset = value(transform.offset); return;
+        case Property::texture_rotation: transform.rotation_rad = value(transform.rotation_rad); return;
+        case Property::texture_scale: transform.scale = value(transform.scale); return;
         default: return;
     }
 }
@@ -77,10 +80,9 @@ kernels::Material Factors::made() const {
 template <class T>
 void drive(std::vector<DrivenProperty>& all, Property property, const std::optional<Track<T>>& track) {
     if (!track) return;
-    DrivenProperty driven;
-    driven.property = property;
-    driven.track = &*track;
-    all.push_back(driven);
+    LayeredTrack<T> own;
+    add_part(own, 0, *track);
+    all.push_back({property, TextureUse::base_color, std::move(own), {}});
 }
 
 void drive_all(std::vector<DrivenProperty>& all, const MaterialSpec& spec) {
@@ -182,8 +184,7 @@ int MaterialRig::material_of(int entry, const MeshPrimitive& primitive) const {
 
 kernels::Material MaterialRig::evaluate(const Own& own, double time_s) const {
     Factors factors{scene_->materials[index(own.original)], scene_->material_sources[index(own.original)]};
-    for (const DrivenProperty& driven : own.driven)
-        if (driven.plays(time_s)) factors.set(driven, time_s);
+    for (const DrivenProperty& driven : own.driven) factors.set(driven, time_s);
     if (own.blends && factors.material.alpha_mode == kernels::AlphaMode::opaque) factors.material.alpha_mode = kernels::AlphaMode::blend;
     return factors.made();
 }
@@ -218,7 +219,7 @@ std::vector<double> MaterialRig::discontinuities(double begin_s, double end_s) c
     std::vector<double> times;
     for (const Own& own : own_)
         for (const DrivenProperty& driven : own.driven) {
-            const std::vector<double> more = driven.discontinuities(begin_s, end_s);
+            const std::vector<double> more = driven.discontinuities(begin_s, end_s, 0);
             times.insert(times.end(), more.begin(), more.end());
         }
     return times;

@@ -1,40 +1,41 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <memory>
 #include <tuple>
 #include <variant>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "frame/layered_track.h"
 #include "frame/node_rig.h"
 #include "scene/scene.h"
 
 namespace kadr {
 
-/// A property's track and the clock that it runs by: that of a layer of clips, or the shot's own time. Weights do not mix
-/// properties: of several layers that play the last one counts.
+/// What drives one property beside nodes' transforms: layers of clips, mixed by weight as a LayeredTrack, or a track of
+/// the shot. The property's own value, which makes up for missing weight, comes with every call; `clip_offset_s` is that
+/// of NodeRig.
 struct DrivenProperty {
     Property property = Property::node_visible;
     TextureUse use = TextureUse::base_color;
-    std::variant<const Track<double>*, const Track<glm::dvec2>*, const Track<glm::dvec3>*> track;  ///< never null
-    std::optional<PlayingLayer> layer = {};  ///< none: the track runs by the shot's time
+    std::variant<LayeredTrack<double>, LayeredTrack<glm::dvec2>, LayeredTrack<glm::dvec3>> track;  ///< at least one part
+    std::shared_ptr<const std::vector<PlayingLayer>> layers = {};  ///< of the scene entry; null: one track, by the shot's time
 
-    /// Whether it drives the property at a time: its layer's weight is above zero.
-    bool plays(double time_s) const { return !layer || layer->weight_at(time_s) > 0; }
-
-    double number(double time_s) const { return at<double>(time_s); }
-    glm::dvec2 pair(double time_s) const { return at<glm::dvec2>(time_s); }
-    glm::dvec3 triple(double time_s) const { return at<glm::dvec3>(time_s); }
-    /// Times of the shot inside (begin, end) where the value jumps.
-    std::vector<double> discontinuities(double begin_s, double end_s) const;
-    /// Times of the shot inside (begin, end) where the track has keys.
-    std::vector<double> key_times(double begin_s, double end_s) const;
-
-private:
+    /// @pre the track is one of T
     template <class T>
-    T at(double time_s) const { return evaluate(*std::get<const Track<T>*>(track), layer ? layer->clip_time(time_s, 0) : time_s); }
+    T value(const T& own, double time_s, double clip_offset_s) const {
+        const auto& mix = std::get<LayeredTrack<T>>(track);
+        return layers ? evaluate(mix, own, *layers, time_s, clip_offset_s) : evaluate(*mix.parts.front().track, time_s);
+    }
+    /// As value, of a distance for which 0 means infinite: where the property's own is, the mean of the layers is divided by
+    /// the weight that they have together, so that it grows beyond all bounds while they fade out.
+    double distance(double own, double time_s, double clip_offset_s) const;
+    /// Times of the shot inside (begin, end) where the value jumps.
+    std::vector<double> discontinuities(double begin_s, double end_s, double clip_offset_s) const;
+    /// Times of the shot inside (begin, end) where the tracks or their weights have keys.
+    std::vector<double> key_times(double begin_s, double end_s, double clip_offset_s) const;
 };
 
 /// What the playing clips of each scene entry drive beside nodes' transforms (KHR_animation_pointer).
@@ -43,12 +44,14 @@ public:
     /// @param scenes  one per scene entry
     PropertyRig(const Scene& scene, const std::vector<BoundScene>& scenes);
 
-    /// What is driven of one object, in the order in which it applies: where clips drive the same, the last one wins.
+    /// What is driven of one object, every property once.
     /// @param index  node, light, camera: into the Scene's table; material: as the file numbers it
     const std::vector<DrivenProperty>& of(int entry, PropertyOwner owner, int index) const;
 
 private:
-    void add_clip(const Clip& clip, int entry, const PlayingLayer& layer);
+    using EntryLayers = std::shared_ptr<const std::vector<PlayingLayer>>;
+    void add_clip(const Clip& clip, int entry, const EntryLayers& layers, int layer);
+    DrivenProperty& property_of(int entry, const PropertyChannel& channel);
 
     std::map<std::tuple<int, PropertyOwner, int>, std::vector<DrivenProperty>> driven_;
 };

@@ -1,6 +1,6 @@
 #include "frame/visibility_rig.h"
 
-#include <algorithm>
+#include "frame/layered_switch.h"
 
 namespace kadr {
 
@@ -37,7 +37,8 @@ int VisibilityRig::entry_switch(const SceneSpec& spec) {
 
 std::optional<VisibilityRig::Switch> VisibilityRig::switch_for(bool rest, const SwitchTrack* by_shot, const std::vector<DrivenProperty>& by_clip) {
     if (by_shot) return ever_off(*by_shot) ? std::optional(Switch{-1, rest, {}, by_shot}) : std::nullopt;
-    return rest && by_clip.empty() ? std::nullopt : std::optional(Switch{-1, rest, by_clip, nullptr});
+    if (by_clip.empty()) return rest ? std::nullopt : std::optional(Switch{-1, rest, {}, nullptr});
+    return Switch{-1, rest, by_clip.front(), nullptr};
 }
 
 void VisibilityRig::add_tree(const Scene& scene, const ByShot& by_shot, const PropertyRig& properties, int entry, int root, int above) {
@@ -59,8 +60,7 @@ void VisibilityRig::add_tree(const Scene& scene, const ByShot& by_shot, const Pr
 
 bool VisibilityRig::Switch::on(double time_s) const {
     if (by_shot) return is_on(*by_shot, time_s);
-    const auto last = std::find_if(by_clip.rbegin(), by_clip.rend(), [time_s](const DrivenProperty& driven) { return driven.plays(time_s); });
-    return last == by_clip.rend() ? rest : last->number(time_s) >= 0.5;
+    return by_clip ? is_on(std::get<LayeredTrack<double>>(by_clip->track), rest, *by_clip->layers, time_s, 0) : rest;
 }
 
 VisibilityRig::States VisibilityRig::at(double time_s) const {
@@ -80,10 +80,10 @@ std::vector<double> VisibilityRig::discontinuities(double begin_s, double end_s)
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
     for (const Switch& one : switches_) {
-        if (one.by_shot)
-            add(kadr::discontinuities(*one.by_shot, begin_s, end_s));
-        else
-            for (const DrivenProperty& driven : one.by_clip) add(driven.discontinuities(begin_s, end_s));
+        if (one.by_shot) add(kadr::discontinuities(*one.by_shot, begin_s, end_s));
+        if (!one.by_clip) continue;
+        add(one.by_clip->discontinuities(begin_s, end_s, 0));
+        add(handovers(std::get<LayeredTrack<double>>(one.by_clip->track), one.rest, *one.by_clip->layers, begin_s, end_s, 0));
     }
     return times;
 }

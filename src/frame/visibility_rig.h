@@ -38,7 +38,7 @@ private:
     struct Switch {
         int above = -1;  ///< into switches_; always before this one
         bool rest = true;
-        std::vector<DrivenProperty> by_clip;
+        std::optional<DrivenProperty> by_clip;
         const SwitchTrack* by_shot = nullptr;  ///< wins over clips and file
         bool on(double time_s) const;
     };

@@ -21,18 +21,7 @@ LightSpec sun_light() {
 /// A clip that drives one property of the stage's file.
 template <class T>
 void drive(Stage& stage, Property property, int index, Track<T> values) {
-    if (stage.scene.clips.empty()) {
-        Clip clip;
-        clip.name = "Clip";
-        clip.end_s = 1000;
-        stage.scene.clips.push_back(clip);
-        stage.scene.files[0].clip_count = 1;
-    }
-    PropertyChannel channel;
-    channel.property = property;
-    channel.index = index;
-    channel.track = std::move(values);
-    stage.scene.clips[0].properties.push_back(channel);
+    stage.drive(0, property, index, std::move(values));
 }
 
 int add_lamp(Stage& stage) {

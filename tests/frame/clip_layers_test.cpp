@@ -171,7 +171,6 @@ struct Arm : Stage {
         layer.where = {"stage.yaml", 4, 7};
         return layer;
     }
-    ClipLayer& layer(std::size_t i) { return shot.scenes[0].layers[i]; }
     Decomposition pose(double time_s) const { return decompose(bind().node_transforms(time_s)[static_cast<std::size_t>(arm)]); }
 };
 

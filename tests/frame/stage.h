@@ -88,6 +88,31 @@ struct Stage {
         return scene.clips[0].channels.back();
     }
 
+    /// Lets a clip, counted from 0, drive a property beside nodes' transforms. Clips that are missing are made.
+    template <class T>
+    void drive(int clip, Property property, int object, Track<T> values) {
+        while (static_cast<int>(scene.clips.size()) <= clip) scene.clips.push_back({"clip " + std::to_string(scene.clips.size()), 0, 1000, {}, 1});
+        scene.files[0].clip_count = static_cast<int>(scene.clips.size());
+        PropertyChannel channel;
+        channel.property = property;
+        channel.index = object;
+        channel.track = std::move(values);
+        scene.clips[static_cast<std::size_t>(clip)].properties.push_back(channel);
+    }
+    /// A layer of one clip for each weight.
+    void play(const std::vector<Track<double>>& weights) {
+        shot.scenes[0].layers.clear();
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            ClipLayer layer;
+            layer.clips = ClipLayer::Clips::one;
+            layer.clip_index = static_cast<int>(i);
+            layer.weight = weights[i];
+            layer.where = {"stage.yaml", 4, 7};
+            shot.scenes[0].layers.push_back(layer);
+        }
+    }
+    ClipLayer& layer(std::size_t i) { return shot.scenes[0].layers[i]; }
+
     BoundShot bind() const { return BoundShot(shot, scene); }
     std::vector<SceneSnapshot> snapshots(int frame = 0) const {
         const BoundShot bound = bind();
