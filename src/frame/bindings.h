@@ -10,6 +10,7 @@
 #include "frame/material_rig.h"
 #include "frame/morph_rig.h"
 #include "frame/node_rig.h"
+#include "frame/placed_instances.h"
 #include "frame/property_rig.h"
 #include "frame/references.h"
 #include "frame/visibility_rig.h"
@@ -28,6 +29,8 @@ struct Bindings {
     std::map<std::string, ResolvedReference> references;
     std::vector<InstanceSeed> seeds;    ///< of nodes that a root reaches
     InstanceList instances;             ///< every copy of every seed
+    std::vector<IdRange> still;         ///< instances that look and stand the same throughout the shot
+    std::vector<IdRange> changing;      ///< the others
     std::vector<double> clip_offsets_s; ///< of all copies, each once, ascending; 0 among them
     std::vector<LightSeed> lights;      ///< lights of the scenes that shine
     int camera_node = -1;               ///< of an authored camera
@@ -36,6 +39,7 @@ struct Bindings {
     MaterialRig materials;
     MorphRig morphs;
     std::vector<Deformer> deformers;    ///< of seeds whose vertices bend
+    std::shared_ptr<StillInstances> still_places = std::make_shared<StillInstances>();
     std::shared_ptr<DeformedCache> deformed = std::make_shared<DeformedCache>();
 
     /// world_from_node of an instance, or of a light's copy. @param copy null: the scene is not repeated

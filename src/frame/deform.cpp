@@ -215,7 +215,7 @@ void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSna
     if (bindings.deformers.empty()) return;
     Part part(shot, open_s, close_s, snapshot.render_origin);
     std::map<int, std::vector<std::size_t>> shown;  // deformer -> instances
-    for (std::size_t i = 0; i < snapshot.instances.size(); ++i)
+    for (std::size_t i = snapshot.instances.shared_size(); i < snapshot.instances.size(); ++i)
         if (const int deformer = bindings.seed_of(snapshot.instances[i].id).deformer; deformer >= 0) shown[deformer].push_back(i);
     double error_px = 0;
     for (const auto& [index, instances] : shown) {
@@ -223,8 +223,8 @@ void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSna
         DeformationView view;
         view.enough_px = kMargin * kDeformationShare * shot.shot().render.motion_tolerance_px;
         for (const std::size_t i : instances) {
-            view.world_from_deformed.push_back(interpolate(snapshot.motion, snapshot.motion.headers[i], 0));  // relative to the origin
-            snapshot.instances[i].deformed = static_cast<int>(snapshot.deformed.size());
+            view.world_from_deformed.push_back(interpolate(snapshot.motion, i, 0));  // relative to the origin
+            snapshot.instances.edit(i).deformed = static_cast<int>(snapshot.deformed.size());
         }
         const FittedPoses fitted = fit_poses(shot, deformer, part, view);
         const std::uint64_t version = version_of(fitted.keys);

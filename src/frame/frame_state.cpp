@@ -178,6 +178,16 @@ void check_count(const Shot& shot, const InstanceList& instances) {
                                 fmt::format("expected at most {}: fewer copies, or fewer parts in what is copied", kMostInstances)));
 }
 
+/// Whether the instances of a seed look and stand the same throughout the shot.
+bool stands_still(const Bindings& bindings, const InstanceSeed& seed) {
+    return !bindings.rig.moves(seed.node) && seed.deformer < 0 && !bindings.visibility.ever_hides(seed.mesh_node);
+}
+
+void divide_instances(Bindings& bindings) {
+    bindings.still = bindings.instances.of_seeds([&](const InstanceSeed& seed) { return stands_still(bindings, seed); });
+    bindings.changing = bindings.instances.of_seeds([&](const InstanceSeed& seed) { return !stands_still(bindings, seed); });
+}
+
 /// The bent vertices of a mesh are made once a frame, for all copies.
 void check_deforming_copies(const Shot& shot, const Scene& scene, const Bindings& bindings) {
     for (const InstanceSeed& seed : bindings.seeds) {
@@ -288,7 +298,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
 
     sequence_ = Sequence(timing_, shot.shutter);
     auto bindings = std::make_shared<Bindings>(
-        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
+        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
     bindings->visibility = VisibilityRig(shot, scene, scenes, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
@@ -296,6 +306,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     bindings->instances = InstanceList(bindings->seeds, scene, copies_of(shot, scene, bindings->rig));
     check_count(shot, bindings->instances);
     check_deforming_copies(shot, scene, *bindings);
+    divide_instances(*bindings);
     bindings->clip_offsets_s = offsets_of(bindings->instances, scene.files.size());
     if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));

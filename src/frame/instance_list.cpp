@@ -47,6 +47,19 @@ std::vector<Instance> InstanceList::range(std::size_t first, std::size_t count) 
     return instances;
 }
 
+std::vector<IdRange> InstanceList::of_seeds(const std::function<bool(const InstanceSeed&)>& chosen) const {
+    std::vector<IdRange> ranges;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (!chosen(*groups_[g].seed)) continue;
+        const std::size_t first = groups_[g].first, end = g + 1 < groups_.size() ? groups_[g + 1].first : size_;
+        if (!ranges.empty() && ranges.back().first + ranges.back().count == first)
+            ranges.back().count += end - first;
+        else
+            ranges.push_back({first, end - first});
+    }
+    return ranges;
+}
+
 std::size_t InstanceList::bytes() const {
     std::size_t bytes = groups_.size() * sizeof(Group);
     for (const auto& placements : copies_) bytes += placements.capacity() * sizeof(Placement);

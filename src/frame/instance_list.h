@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,11 @@ struct Instance {
     double clip_offset_s() const { return copy ? copy->clip_offset_s : 0; }
 };
 
+/// The instances [first, first + count) of a list.
+struct IdRange {
+    std::size_t first = 0, count = 0;
+};
+
 /// All instances of a shot. Only the placements of copies are stored: an instance is put together when it is asked for,
 /// so that a copy of a scene costs its 56 bytes here, whatever the scene holds.
 class InstanceList {
@@ -41,6 +47,8 @@ public:
     Instance operator[](std::size_t id) const;
     /// Those from `first` on.
     std::vector<Instance> range(std::size_t first, std::size_t count) const;
+    /// All instances of the seeds that are chosen, as few ranges as possible.
+    std::vector<IdRange> of_seeds(const std::function<bool(const InstanceSeed&)>& chosen) const;
     /// Copies of a file of the shot; empty: it is not repeated.
     std::span<const Placement> copies_of(int file) const { return copies_[static_cast<std::size_t>(file)]; }
     /// Bytes that are kept beside the seeds and the scene.

@@ -2,444 +2,181 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <map>
+#include <span>
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "base/text.h"
 #include "frame/bindings.h"
-#include "frame/camera_keys.h"
-#include "frame/key_grid.h"
-#include "frame/problem.h"
-#include "frame/shared_transforms.h"
+#include "frame/instance_fit.h"
+#include "frame/placed_instances.h"
 
 namespace kadr {
 
 namespace {
 
-constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees: what bounds of moving instances are good for
-constexpr double kBesideCamera = 0.05;  // of an instance's radius: nearer corners stand for faces that are farther away
-constexpr double kVanishing = 1e-5;     // of the scale near by: what stands for a scale of zero
-constexpr std::size_t kBatch = 2048;    // instances evaluated together; their samples stay in the cache
-
-/// What came out for one instance: its frames lie in the batch's list.
-struct Fitted {
-    std::uint32_t first = 0, count = 0;
-    bool linear = false, hidden = false;
-    float error_px = 0;
-};
-
-/// The keys of a node that no even grid meets. Paths have corners there, and a corner strays farthest in itself, wherever
-/// it lies between the times of the grid.
-struct Corners {
-    std::vector<double> u;  ///< in (0, 1)
-    std::vector<PixelScale> scales;
-    SharedTransforms transforms;
-};
-
-struct Batch {
-    std::vector<Fitted> fitted;           ///< parallel to the batch's instances
-    std::vector<Decomposition> frames;
-    std::vector<Diagnostic> problems;
-    MotionFit fit;
-};
-
-/// The interval, and what the camera does in it.
-struct Interval {
-    const BoundShot& shot;
-    glm::dvec3 origin;
-    double open_s, close_s;
-    double tolerance_px;
-    int image_height;
-
-    double time(double u) const { return open_s + u * (close_s - open_s); }
-    /// The camera's view of points that are relative to the render origin.
-    PixelScale scale_at(double u) const {
-        CameraState camera = camera_at(shot, time(u));
-        camera.position -= origin;
-        return {camera, image_height};
-    }
-};
-
-glm::dmat4 relative(glm::dmat4 world, const glm::dvec3& origin) {
-    for (int i = 0; i < 3; ++i) world[3][i] -= origin[i];
-    return world;
-}
-
-double radius_of(const glm::dmat4& m) {
-    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-}
-
-/// Largest screen-space distance between two placements of [-1, 1]^3; a bound of it where that is below `negligible`.
-double pixels_between(const glm::dmat4& is, const glm::dmat4& wanted, const PixelScale& scale, double negligible) {
-    const double nearest = std::max(kBesideCamera * radius_of(wanted), 1e-30);
-    // Most instances hardly stray: one bound for all corners spares looking at each.
-    double apart = 0, radius = 0;
-    for (int column = 0; column < 4; ++column) apart += glm::length(glm::dvec3(is[column] - wanted[column]));
-    for (int column = 0; column < 3; ++column) radius += glm::length(glm::dvec3(wanted[column]));
-    const double bound = scale.most_pixels(apart, glm::dvec3(wanted[3]), radius, nearest);
-    if (bound <= negligible) return bound;
-    double worst = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 at(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1, 1);
-        const glm::dvec3 point(wanted * at);
-        worst = std::max(worst, scale.pixels(glm::distance(glm::dvec3(is * at), point), point, nearest));
-    }
-    return worst;
-}
-
-bool nearly_same(const glm::dmat4& a, const glm::dmat4& b) {
-    const double size = 1e-13 * (radius_of(a) + glm::length(glm::dvec3(a[3])));
-    for (int column = 0; column < 4; ++column)
-        if (!(glm::length(a[column] - b[column]) <= size)) return false;
-    return true;
-}
-
-glm::dmat4 mixed(const glm::dmat4& a, const glm::dmat4& b, double u) { return a * (1 - u) + b * u; }
-
-/// One moving instance and its true places at 4 * segments + 1 times.
-class Fit {
-public:
-    Fit(std::vector<glm::dmat4> places, const Interval& interval, const std::vector<PixelScale>& scales)
-        : places_(std::move(places)), interval_(interval), scales_(scales) {
-        parts_.reserve(places_.size());
-        for (const glm::dmat4& place : places_) parts_.push_back(decompose(place));
-    }
-
-    bool finite() const { return std::all_of(places_.begin(), places_.end(), is_finite); }
-    bool hidden() const { return std::all_of(parts_.begin(), parts_.end(), is_singular); }
-    bool still() const {
-        return std::all_of(places_.begin() + 1, places_.end(), [&](const glm::dmat4& m) { return nearly_same(m, places_[0]); });
-    }
-
-    /// Gives vanishing scales (an object that pops up from nothing) a tiny size, with the rotation of the nearest time
-    /// at which there is one. @return false where a scale changes its sign: no path leads through zero
-    bool open_up() {
-        if (std::none_of(parts_.begin(), parts_.end(), is_singular)) return keeps_its_sign();
-        const std::vector<Decomposition> found = parts_;
-        for (std::size_t i = 0; i < parts_.size(); ++i)
-            if (is_singular(found[i])) parts_[i] = opened(i, found), places_[i] = compose(parts_[i]);
-        return keeps_its_sign();
-    }
-
-    /// Radians that the rotation turns in the liveliest segment.
-    double widest_step() const {
-        double widest = 0;
-        for (std::size_t i = 0; i + 1 < parts_.size(); i += 4) {
-            double turn = 0;
-            for (std::size_t k = i; k < i + 4; ++k) turn += angle_between(parts_[k].rotation, parts_[k + 1].rotation);
-            widest = std::max(widest, turn);
-        }
-        return widest;
-    }
-
-    /// Screen-space error of every fourth place as a frame, where the true place at `u` in [0, 1] is `wanted`.
-    double error_px_at(double u, const glm::dmat4& wanted, const PixelScale& scale) const {
-        const std::size_t segments = places_.size() / 4;
-        const double position = u * static_cast<double>(segments);
-        const std::size_t from = 4 * std::min(static_cast<std::size_t>(position), segments - 1);
-        const glm::dmat4 is = compose(interpolate(parts_[from], parts_[from + 4], position - 0.25 * static_cast<double>(from)));
-        return pixels_between(is, wanted, scale, negligible());
-    }
-
-    /// Screen-space error of every fourth place as a frame; stops early once beyond `enough`.
-    double error_px(double enough) const {
-        double worst = 0;
-        for (std::size_t i = 0; i < places_.size() && worst <= enough; ++i)
-            if (const std::size_t from = i / 4 * 4; i != from)
-                worst = std::max(worst, pixels_between(compose(interpolate(parts_[from], parts_[from + 4], 0.25 * static_cast<double>(i - from))), places_[i], scales_[i], negligible()));
-        return worst;
-    }
-
-    /// Whether two linearly interpolated matrices would do.
-    bool linear(double enough) const {
-        for (std::size_t i = 1; i < 4; ++i)
-            if (places_.size() != 5 || pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i], negligible()) > enough) return false;
-        return true;
-    }
-
-    void append_frames(std::vector<Decomposition>& frames, std::size_t step) const {
-        for (std::size_t i = 0; i < parts_.size(); i += step) frames.push_back(parts_[i]);
-    }
-
-private:
-    double negligible() const { return 0.1 * interval_.tolerance_px; }
-    bool keeps_its_sign() const {
-        return std::all_of(parts_.begin(), parts_.end(), [&](const Decomposition& p) { return (p.scale.z < 0) == (parts_[0].scale.z < 0); });
-    }
-
-    Decomposition opened(std::size_t at, const std::vector<Decomposition>& found) const {
-        std::size_t nearest = at, distance = found.size();
-        for (std::size_t i = 0; i < found.size(); ++i)
-            if (const std::size_t d = i < at ? at - i : i - at; !is_singular(found[i]) && d < distance) nearest = i, distance = d;
-        Decomposition parts = found[nearest];
-        const glm::dmat3 axes = glm::mat3_cast(parts.rotation);
-        parts.translation = glm::dvec3(places_[at][3]);
-        for (int i = 0; i < 3; ++i) {
-            const double own = glm::dot(axes[i], glm::dvec3(places_[at][i]));
-            const double least = kVanishing * parts.scale[i];
-            parts.scale[i] = std::abs(own) > std::abs(least) && (own < 0) == (least < 0) ? own : least;
-            parts.shear[i] *= kVanishing;
-        }
-        return parts;
-    }
-
-    std::vector<glm::dmat4> places_;
-    std::vector<Decomposition> parts_;
-    const Interval& interval_;
-    const std::vector<PixelScale>& scales_;
-};
-
-/// Fits the frames of some instances; those that need more go round again with twice as many.
-class BatchFit {
-public:
-    BatchFit(const Interval& interval, std::span<const Instance> instances, Batch& batch)
-        : interval_(interval), instances_(instances), batch_(batch), rig_(interval.shot.bindings().rig), scene_(interval.shot.scene()) {
-        batch_.fitted.resize(instances.size());
-        uneven_.resize(instances.size());
-    }
-
-    void run() {
-        fit_still();
-        for (std::map<int, std::vector<std::size_t>>::iterator next; (next = waiting_.begin()) != waiting_.end();) {
-            const auto [segments, members] = *next;
-            waiting_.erase(next);
-            if (members.empty()) continue;
-            fit_moving(segments, members);
-        }
-    }
-
-private:
-    int node_of(std::size_t i) const { return instances_[i].seed->node; }
-    glm::dmat4 copied_from_geometry(std::size_t i) const { return interval_.shot.bindings().copied_from_geometry(scene_, instances_[i]); }
-
-    void refuse(std::size_t i, std::string_view what, std::string expected) {
-        const int file = rig_.file_of(node_of(i));
-        const std::string name = node_path(scene_, file, node_of(i));
-        batch_.problems.push_back(problem_at(interval_.shot.shot().scenes[static_cast<std::size_t>(file)].where,
-                                             fmt::format("node '{}' {} at {} s", name, what, format_number(interval_.open_s)), std::move(expected)));
-        batch_.fitted[i].hidden = true;
-    }
-
-    void refuse_infinite(std::size_t i) { refuse(i, "has a transform that is not finite", "expected finite translations, rotations and scales"); }
-
-    void accept(std::size_t i, std::size_t first, bool linear, double error_px) {
-        batch_.fitted[i] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(batch_.frames.size() - first), linear, false, static_cast<float>(error_px)};
-    }
-
-    /// Instances that do not move over the shot, or all of them when the shutter is closed in an instant.
-    void fit_still() {
-        const bool instant = !(interval_.close_s > interval_.open_s);
-        SharedTransforms at_opening(interval_.shot.bindings(), {interval_.open_s});
-        std::vector<std::size_t> moving;
-        for (std::size_t i = 0; i < instances_.size(); ++i)
-            if (instant || !rig_.moves(node_of(i)))
-                place_still(i, at_opening.world_from_node(instances_[i]).front());
-            else
-                moving.push_back(i);
-        enqueue_all(moving);
-    }
-
-    /// By how lively the nodes are at the times of each copy's clips.
-    void enqueue_all(const std::vector<std::size_t>& moving) {
-        std::map<double, std::vector<std::size_t>> by_offset;
-        for (const std::size_t i : moving) by_offset[instances_[i].clip_offset_s()].push_back(i);
-        for (const auto& [offset, members] : by_offset) {
-            std::vector<int> nodes;
-            for (const std::size_t i : members) nodes.push_back(node_of(i));
-            nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-            const NodeRig::Selection selection = rig_.select(nodes);
-            const auto activity = rig_.activity(selection, interval_.open_s, interval_.close_s, offset);
-            for (const std::size_t i : members) enqueue(i, activity[static_cast<std::size_t>(selection.slot_of(node_of(i)))]);
-        }
-    }
-
-    void place_still(std::size_t i, const glm::dmat4& world) {
-        const glm::dmat4 place = relative(world * copied_from_geometry(i), interval_.origin);
-        const Decomposition parts = decompose(place);
-        if (!is_finite(place)) return refuse_infinite(i);
-        batch_.fitted[i].hidden = is_singular(parts);
-        if (batch_.fitted[i].hidden) return;
-        batch_.frames.push_back(parts);
-        accept(i, batch_.frames.size() - 1, true, 0);
-    }
-
-    void enqueue(std::size_t i, const NodeRig::Activity& activity) {
-        const double steps = std::ceil(activity.turn_rad / kWidestStep - 1e-9);
-        if (!(steps <= kMostSegments)) batch_.fit.too_fast = true;
-        // Keys that no even grid meets are smoothed: more segments than keys, so that none is passed over.
-        const int keys = std::min(activity.keys + 1, kMostSegments);
-        const int wanted = std::max(steps <= kMostSegments ? static_cast<int>(steps) : kMostSegments, keys);
-        uneven_[i] = activity.keys > 0 && activity.grid == 1;
-        waiting_[refined_segments(activity.grid, wanted)].push_back(i);
-    }
-
-    Corners& corners_of(std::size_t i) {
-        const std::pair<int, double> key{node_of(i), instances_[i].clip_offset_s()};
-        if (const auto found = corners_.find(key); found != corners_.end()) return found->second;
-        const std::vector<double> times = rig_.key_times_of(key.first, interval_.open_s, interval_.close_s, key.second);
-        Corners corners{{}, {}, SharedTransforms(interval_.shot.bindings(), times)};
-        for (const double time : times) {
-            corners.u.push_back((time - interval_.open_s) / (interval_.close_s - interval_.open_s));
-            corners.scales.push_back(interval_.scale_at(corners.u.back()));
-        }
-        return corners_.emplace(key, std::move(corners)).first->second;
-    }
-
-    void miss(std::size_t i) {
-        batch_.fit.missed = true;
-        if (!uneven_[i]) return;
-        for (const double u : corners_of(i).u) batch_.fit.corners_s.push_back(interval_.time(u));
-    }
-
-    double error_px_in_corners(std::size_t i, const Fit& fit) {
-        Corners& corners = corners_of(i);
-        const glm::dmat4 local = copied_from_geometry(i);
-        const std::vector<glm::dmat4> places = corners.transforms.world_from_node(instances_[i]);
-        double worst = 0;
-        for (std::size_t k = 0; k < places.size(); ++k)
-            worst = std::max(worst, fit.error_px_at(corners.u[k], relative(places[k] * local, interval_.origin), corners.scales[k]));
-        return worst;
-    }
-
-    void fit_moving(int segments, const std::vector<std::size_t>& members) {
-        std::vector<double> times;
-        std::vector<PixelScale> scales;
-        for (int k = 0; k <= 4 * segments; ++k) {
-            const double u = k / (4.0 * segments);
-            times.push_back(interval_.time(u));
-            scales.push_back(interval_.scale_at(u));
-        }
-        SharedTransforms transforms(interval_.shot.bindings(), times);
-        for (const std::size_t i : members) {
-            const glm::dmat4 local = copied_from_geometry(i);
-            std::vector<glm::dmat4> places = transforms.world_from_node(instances_[i]);
-            for (glm::dmat4& place : places) place = relative(place * local, interval_.origin);
-            fit_one(i, segments, Fit(std::move(places), interval_, scales));
-        }
-    }
-
-    void fit_one(std::size_t i, int segments, Fit fit) {
-        if (!fit.finite()) return refuse_infinite(i);
-        batch_.fitted[i].hidden = fit.hidden();
-        if (batch_.fitted[i].hidden) return;
-        const std::size_t first = batch_.frames.size();
-        if (fit.still()) {
-            fit.append_frames(batch_.frames, 4 * static_cast<std::size_t>(segments) + 1);
-            return accept(i, first, true, 0);
-        }
-        if (!fit.open_up())
-            return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
-                          "expected scales that keep their sign; use a step key to mirror an object");
-        // Where vertices bend as well, both share the tolerance.
-        const double enough = kMotionMargin * interval_.tolerance_px * (instances_[i].seed->deformer >= 0 ? 1 - kDeformationShare : 1);
-        const bool last = 2 * segments > kMostSegments;
-        const double step = fit.widest_step();
-        double error = fit.error_px(last ? std::numeric_limits<double>::infinity() : enough);
-        if (uneven_[i] && (last || error <= enough)) error = std::max(error, error_px_in_corners(i, fit));
-        const double rounding = 1e-9;  // a turn of exactly 10 degrees a step, summed from four
-        if ((step > kWidestStep + rounding || error > enough) && !last) {
-            waiting_[2 * segments].push_back(i);
-            return;
-        }
-        if (step > kWidestStep + rounding) batch_.fit.too_fast = true;
-        if (error > enough) miss(i);
-        fit.append_frames(batch_.frames, 4);
-        accept(i, first, segments == 1 && fit.linear(enough), error);
-    }
-
-    const Interval& interval_;
-    std::span<const Instance> instances_;
-    Batch& batch_;
-    const NodeRig& rig_;
-    const Scene& scene_;
-    std::map<int, std::vector<std::size_t>> waiting_;  ///< by segments
-    std::vector<bool> uneven_;                          ///< whether some keys lie beside every even grid
-    std::map<std::pair<int, double>, Corners> corners_;  ///< by node and clip offset
-};
-
-std::vector<Instance> batch_of(const InstanceList& instances, std::size_t b) {
-    return instances.range(b * kBatch, std::min(kBatch, instances.size() - b * kBatch));
-}
-
-std::vector<Batch> fit_batches(const Interval& interval, const InstanceList& instances) {
-    std::vector<Batch> batches((instances.size() + kBatch - 1) / kBatch);
-    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
-        const std::vector<Instance> members = batch_of(instances, b);
-        BatchFit(interval, members, batches[b]).run();
-    });
-    std::vector<Diagnostic> problems;
-    for (const Batch& batch : batches) problems.insert(problems.end(), batch.problems.begin(), batch.problems.end());
-    if (!problems.empty()) throw InputError(std::move(problems));
-    return batches;
-}
+constexpr std::size_t kBatch = 2048;  // instances evaluated together; their samples stay in the cache
 
 /// Flattening a mesh gives it a structure of its own for every copy; beyond some thousands that costs more than it saves.
 constexpr std::size_t kMostFlattenedCopies = 4096;
 
-void add_instance(const BoundShot& shot, const Instance& source, SceneSnapshot& snapshot) {
-    const Bindings& bindings = shot.bindings();
-    const int node = source.seed->node;
-    SnapshotInstance instance{source.seed->geometry, source.seed->material, source.id};
-    const std::size_t copies = bindings.instances.copies_of(bindings.rig.file_of(node)).size();
-    if (!bindings.rig.moves(node) && copies <= kMostFlattenedCopies) {
-        instance.fixed_place = static_cast<std::int32_t>(snapshot.fixed_places.size());
-        snapshot.fixed_places.push_back(bindings.node_transform(node, source.copy, 0) * bindings.copied_from_geometry(shot.scene(), source));
+struct Batch {
+    std::vector<Instance> instances;
+    InstanceFits fits;
+};
+
+/// The ranges cut into pieces of kBatch instances, and short ones put together.
+std::vector<std::vector<IdRange>> pieces_of(std::span<const IdRange> ranges) {
+    std::vector<std::vector<IdRange>> pieces;
+    std::size_t free = 0;
+    for (IdRange rest : ranges)
+        while (rest.count > 0) {
+            if (free == 0) pieces.emplace_back(), free = kBatch;
+            const std::size_t count = std::min(free, rest.count);
+            pieces.back().push_back({rest.first, count});
+            free -= count;
+            rest = {rest.first + count, rest.count - count};
+        }
+    return pieces;
+}
+
+std::vector<Batch> fit_batches(const Interval& interval, std::span<const IdRange> ranges) {
+    const std::vector<std::vector<IdRange>> pieces = pieces_of(ranges);
+    std::vector<Batch> batches(pieces.size());
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
+        for (const IdRange& range : pieces[b]) {
+            const std::vector<Instance> members = interval.shot.bindings().instances.range(range.first, range.count);
+            batches[b].instances.insert(batches[b].instances.end(), members.begin(), members.end());
+        }
+        batches[b].fits = fit_instances(interval, batches[b].instances);
+    });
+    std::vector<Diagnostic> problems;
+    for (const Batch& batch : batches) problems.insert(problems.end(), batch.fits.problems.begin(), batch.fits.problems.end());
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return batches;
+}
+
+MotionFit quality_of(const std::vector<Batch>& batches) {
+    MotionFit all;
+    for (const Batch& batch : batches) {
+        const MotionFit& fit = batch.fits.quality;
+        all.too_fast |= fit.too_fast;
+        all.missed |= fit.missed;
+        all.corners_s.insert(all.corners_s.end(), fit.corners_s.begin(), fit.corners_s.end());
     }
-    snapshot.instances.push_back(instance);
+    return all;
 }
 
 float frame_time(std::size_t frame, std::size_t count) {
     return count > 1 ? static_cast<float>(static_cast<double>(frame) / static_cast<double>(count - 1)) : 0.0f;
 }
 
-void write_frames(MotionFrames& motion, const kernels::TransformHeader& header, const Decomposition* parts) {
-    for (std::size_t k = 0; k < header.frame_count; ++k) {
-        const float time = frame_time(k, header.frame_count);
-        const std::size_t at = header.first_frame + k;
-        if (motion.type == MotionFrames::Type::srt)
-            motion.srt[at] = to_srt(parts[k], time, k > 0 ? &motion.srt[at - 1] : nullptr);
-        else
-            motion.matrices[at] = to_matrix(parts[k], time);
+/// Lays the frames of batches out in lists that follow others of some lengths.
+class Packing {
+public:
+    Packing(const BoundShot& shot, const std::vector<Batch>& batches, const PlacedInstances* before) : shot_(shot) {
+        if (before) srt_before_ = before->srt.size(), matrices_before_ = before->matrices.size(), places_before_ = before->fixed_places.size();
+        std::size_t most = 0;
+        for (const Batch& batch : batches) most += batch.instances.size();
+        reserve(most);
+        for (const Batch& batch : batches)
+            for (std::size_t i = 0; i < batch.instances.size(); ++i)
+                if (!batch.fits.fitted[i].hidden) add(batch.instances[i], batch.fits.fitted[i], batch.fits.frames);
+        placed_.srt.resize(srt_count_);
+        placed_.matrices.resize(matrix_count_);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sources_.size(), 1024), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) write_frames(i);
+        });
     }
-}
 
-bool any_sheared(const std::vector<Batch>& batches) {
-    return std::any_of(batches.begin(), batches.end(), [](const Batch& batch) { return std::any_of(batch.frames.begin(), batch.frames.end(), is_sheared); });
-}
+    PlacedInstances take() { return std::move(placed_); }
+    double max_error_px() const { return max_error_px_; }
+    double bending_error_px() const { return bending_error_px_; }
+    std::size_t worst() const { return worst_; }  ///< index into the lists
 
-void pack(const BoundShot& shot, const std::vector<Batch>& batches, SceneSnapshot& snapshot) {
-    MotionFrames& motion = snapshot.motion;
-    motion.type = any_sheared(batches) ? MotionFrames::Type::matrix : MotionFrames::Type::srt;
-    std::vector<const Decomposition*> sources;
-    unsigned count = 0;
-    for (std::size_t b = 0; b < batches.size(); ++b) {
-        const std::vector<Instance> members = batch_of(shot.bindings().instances, b);
-        for (std::size_t i = 0; i < members.size(); ++i) {
-            const Fitted& fitted = batches[b].fitted[i];
-            if (fitted.hidden) continue;
-            sources.push_back(&batches[b].frames[fitted.first]);
-            add_instance(shot, members[i], snapshot);
-            motion.headers.push_back({count, fitted.count});
-            motion.linear.push_back(fitted.linear ? 1 : 0);
-            if (members[i].seed->deformer >= 0) motion.bending_error_px = std::max<double>(motion.bending_error_px, fitted.error_px);
-            if (fitted.error_px > motion.max_error_px) {
-                motion.max_error_px = fitted.error_px;
-                motion.worst = static_cast<std::uint32_t>(motion.headers.size() - 1);
+private:
+    void reserve(std::size_t count) {
+        sources_.reserve(count);
+        placed_.instances.reserve(count);
+        placed_.headers.reserve(count);
+        placed_.types.reserve(count);
+        placed_.linear.reserve(count);
+    }
+
+    void add(const Instance& source, const InstanceFits::Fitted& fitted, const std::vector<Decomposition>& frames) {
+        const auto parts = std::span(frames).subspan(fitted.first, fitted.count);
+        const bool sheared = std::any_of(parts.begin(), parts.end(), is_sheared);
+        std::size_t& count = sheared ? matrix_count_ : srt_count_;
+        sources_.push_back(parts.data());
+        placed_.headers.push_back({static_cast<unsigned>((sheared ? matrices_before_ : srt_before_) + count), fitted.count});
+        placed_.types.push_back(sheared ? FrameType::matrix : FrameType::srt);
+        placed_.linear.push_back(fitted.linear ? 1 : 0);
+        count += fitted.count;
+        add_instance(source);
+        if (source.seed->deformer >= 0) bending_error_px_ = std::max<double>(bending_error_px_, fitted.error_px);
+        if (fitted.error_px > max_error_px_) max_error_px_ = fitted.error_px, worst_ = placed_.instances.size() - 1;
+    }
+
+    void add_instance(const Instance& source) {
+        const Bindings& bindings = shot_.bindings();
+        const int node = source.seed->node;
+        SnapshotInstance instance{source.seed->geometry, source.seed->material, source.id};
+        const std::size_t copies = bindings.instances.copies_of(bindings.rig.file_of(node)).size();
+        if (!bindings.rig.moves(node) && copies <= kMostFlattenedCopies) {
+            instance.fixed_place = static_cast<std::int32_t>(places_before_ + placed_.fixed_places.size());
+            placed_.fixed_places.push_back(bindings.node_transform(node, source.copy, 0) * bindings.copied_from_geometry(shot_.scene(), source));
+        }
+        placed_.instances.push_back(instance);
+    }
+
+    void write_frames(std::size_t i) {
+        const auto [first, count] = placed_.headers[i];
+        for (std::size_t k = 0; k < count; ++k) {
+            const float time = frame_time(k, count);
+            if (placed_.types[i] == FrameType::matrix) {
+                placed_.matrices[first - matrices_before_ + k] = to_matrix(sources_[i][k], time);
+                continue;
             }
-            count += fitted.count;
+            const std::size_t at = first - srt_before_ + k;
+            placed_.srt[at] = to_srt(sources_[i][k], time, k > 0 ? &placed_.srt[at - 1] : nullptr);
         }
     }
-    if (motion.type == MotionFrames::Type::srt)
-        motion.srt.resize(count);
-    else
-        motion.matrices.resize(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sources.size(), 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) write_frames(motion, motion.headers[i], sources[i]);
-    });
+
+    const BoundShot& shot_;
+    PlacedInstances placed_;
+    std::vector<const Decomposition*> sources_;  ///< [instance] its frames
+    std::size_t srt_before_ = 0, matrices_before_ = 0, places_before_ = 0;
+    std::size_t srt_count_ = 0, matrix_count_ = 0;
+    double max_error_px_ = 0, bending_error_px_ = 0;
+    std::size_t worst_ = 0;
+};
+
+/// What stands still, seen from the interval's render origin.
+std::shared_ptr<const PlacedInstances> still_places(const Interval& interval) {
+    const Bindings& bindings = interval.shot.bindings();
+    if (auto known = bindings.still_places->find(interval.origin)) return known;
+    const std::vector<Batch> batches = fit_batches(interval, bindings.still);
+    auto placed = std::make_shared<PlacedInstances>(Packing(interval.shot, batches, nullptr).take());
+    placed->key = key_of(*placed);
+    return bindings.still_places->keep(interval.origin, std::move(placed));
+}
+
+/// A list that begins with one of `still`, which it keeps alive, and goes on with `own`.
+template <class T>
+SharedList<T> joined(const std::shared_ptr<const PlacedInstances>& still, std::vector<T> PlacedInstances::*list, PlacedInstances& own) {
+    return {std::shared_ptr<const std::vector<T>>(still, &((*still).*list)), std::move(own.*list)};
+}
+
+void join(const std::shared_ptr<const PlacedInstances>& still, PlacedInstances own, SceneSnapshot& snapshot) {
+    MotionFrames& motion = snapshot.motion;
+    snapshot.instances = joined(still, &PlacedInstances::instances, own);
+    snapshot.fixed_places = joined(still, &PlacedInstances::fixed_places, own);
+    motion.headers = joined(still, &PlacedInstances::headers, own);
+    motion.types = joined(still, &PlacedInstances::types, own);
+    motion.linear = joined(still, &PlacedInstances::linear, own);
+    motion.srt = joined(still, &PlacedInstances::srt, own);
+    motion.matrices = joined(still, &PlacedInstances::matrices, own);
+    snapshot.still_key = still->key;
 }
 
 }  // namespace
@@ -474,37 +211,39 @@ kernels::FrameMatrix to_matrix(const Decomposition& parts, float time) {
     return frame;
 }
 
-Decomposition frame_parts(const MotionFrames& motion, std::size_t index) {
-    if (motion.type == MotionFrames::Type::matrix) {
+Decomposition frame_parts(const MotionFrames& motion, std::size_t instance, std::size_t frame) {
+    const std::size_t index = motion.headers[instance].first_frame + frame;
+    if (motion.types[instance] == FrameType::matrix) {
         glm::dmat4 m(1);
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 4; ++column) m[column][row] = motion.matrices[index].matrix[row][column];
         return decompose(m);
     }
-    const kernels::FrameSrt& frame = motion.srt[index];
-    const glm::dvec3 axis(frame.axis[0], frame.axis[1], frame.axis[2]);
-    return {glm::angleAxis(static_cast<double>(frame.angle), glm::normalize(axis)), glm::dvec3(frame.scale[0], frame.scale[1], frame.scale[2]),
-            glm::dvec3(0), glm::dvec3(frame.translation[0], frame.translation[1], frame.translation[2])};
+    const kernels::FrameSrt& srt = motion.srt[index];
+    const glm::dvec3 axis(srt.axis[0], srt.axis[1], srt.axis[2]);
+    return {glm::angleAxis(static_cast<double>(srt.angle), glm::normalize(axis)), glm::dvec3(srt.scale[0], srt.scale[1], srt.scale[2]),
+            glm::dvec3(0), glm::dvec3(srt.translation[0], srt.translation[1], srt.translation[2])};
 }
 
-glm::dmat4 interpolate(const MotionFrames& motion, const kernels::TransformHeader& header, double time) {
-    if (header.frame_count == 1) return compose(frame_parts(motion, header.first_frame));
-    const double position = std::clamp(time, 0.0, 1.0) * (header.frame_count - 1);
-    const auto segment = std::min(static_cast<unsigned>(position), header.frame_count - 2);
-    const std::size_t first = header.first_frame + segment;
-    return compose(interpolate(frame_parts(motion, first), frame_parts(motion, first + 1), position - segment));
+glm::dmat4 interpolate(const MotionFrames& motion, std::size_t instance, double time) {
+    const unsigned count = motion.headers[instance].frame_count;
+    if (count == 1) return compose(frame_parts(motion, instance, 0));
+    const double position = std::clamp(time, 0.0, 1.0) * (count - 1);
+    const auto segment = std::min(static_cast<unsigned>(position), count - 2);
+    return compose(interpolate(frame_parts(motion, instance, segment), frame_parts(motion, instance, segment + 1), position - segment));
 }
 
 MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const Interval interval{shot, snapshot.render_origin, open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
-    const std::vector<Batch> batches = fit_batches(interval, shot.bindings().instances);
-    MotionFit fit;
-    for (const Batch& batch : batches) {
-        fit.too_fast |= batch.fit.too_fast;
-        fit.missed |= batch.fit.missed;
-        fit.corners_s.insert(fit.corners_s.end(), batch.fit.corners_s.begin(), batch.fit.corners_s.end());
-    }
-    if (!fit.too_fast) pack(shot, batches, snapshot);
+    const std::vector<Batch> batches = fit_batches(interval, shot.bindings().changing);
+    MotionFit fit = quality_of(batches);
+    if (fit.too_fast) return fit;
+    const std::shared_ptr<const PlacedInstances> still = still_places(interval);
+    Packing packing(shot, batches, still.get());
+    join(still, packing.take(), snapshot);
+    snapshot.motion.max_error_px = packing.max_error_px();
+    snapshot.motion.bending_error_px = packing.bending_error_px();
+    snapshot.motion.worst = static_cast<std::uint32_t>(packing.max_error_px() > 0 ? still->instances.size() + packing.worst() : 0);
     return fit;
 }
 

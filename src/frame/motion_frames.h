@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "frame/decompose.h"
+#include "frame/instance_fit.h"
 #include "frame/snapshot.h"
 
 namespace kadr {
@@ -10,22 +11,15 @@ namespace kadr {
 /// world_from_geometry (relative to the render origin) of an instance at a time in [0, 1] of the shutter, as every
 /// device has it: evenly spaced frames, T * R * S with shear linearly, rotation by slerp along the shorter arc.
 /// Times outside [0, 1] clamp.
-glm::dmat4 interpolate(const MotionFrames& motion, const kernels::TransformHeader& header, double time);
+glm::dmat4 interpolate(const MotionFrames& motion, std::size_t instance, double time);
 
-/// One frame in its parts.
-Decomposition frame_parts(const MotionFrames& motion, std::size_t frame);
+/// One frame of an instance in its parts.
+Decomposition frame_parts(const MotionFrames& motion, std::size_t instance, std::size_t frame);
 
 /// Frames in the layout of a device. The axis keeps to that of `previous` where there is one, so that angles run
 /// through zero instead of jumping to the other side; angle in [-pi, pi].
 kernels::FrameSrt to_srt(const Decomposition& parts, float time, const kernels::FrameSrt* previous);
 kernels::FrameMatrix to_matrix(const Decomposition& parts, float time);
-
-/// How near the motion frames of a part of the shutter come.
-struct MotionFit {
-    bool too_fast = false;          ///< something turns so fast that 129 frames are not enough: nothing was added
-    bool missed = false;            ///< something strays beyond the motion tolerance although it has 129 frames
-    std::vector<double> corners_s;  ///< keys, beside every even grid, of what strays: good times to split the shutter at
-};
 
 /// Fills snapshot.instances and snapshot.motion for the part [open_s, close_s] of the shutter. The snapshot's render
 /// origin is set already.

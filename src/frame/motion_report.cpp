@@ -20,7 +20,8 @@ MotionReport motion_report(const BoundShot& shot, const std::vector<SceneSnapsho
     report.parts = parts.size();
     report.tolerance_px = shot.shot().render.motion_tolerance_px;
     for (const SceneSnapshot& part : parts) {
-        for (const kernels::TransformHeader& header : part.motion.headers) report.frames = std::max<std::size_t>(report.frames, header.frame_count);
+        if (!part.motion.headers.empty()) report.frames = std::max<std::size_t>(report.frames, 1);
+        for (const kernels::TransformHeader& header : part.motion.headers.own()) report.frames = std::max<std::size_t>(report.frames, header.frame_count);
         const double before = report.largest_px();
         report.instances_px = std::max(report.instances_px, part.motion.max_error_px);
         for (const auto& bent : part.deformed) report.vertices_px = std::max(report.vertices_px, bent->error_px);

@@ -88,13 +88,13 @@ std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
     return parts;
 }
 
-/// Masks out what is hidden. Switches do not change within a part.
-void hide_instances(const BoundShot& shot, double time_s, std::vector<SnapshotInstance>& instances) {
+/// Masks out what is hidden. Switches do not change within a part; what the list shares is never hidden.
+void hide_instances(const BoundShot& shot, double time_s, SharedList<SnapshotInstance>& instances) {
     const Bindings& bindings = shot.bindings();
     if (bindings.visibility.idle()) return;
     const VisibilityRig::States states = bindings.visibility.at(time_s);
-    for (std::size_t i = 0; i < instances.size(); ++i)
-        if (!states.visible(bindings.seed_of(instances[i].id).mesh_node)) instances[i].mask = 0;
+    for (std::size_t i = instances.shared_size(); i < instances.size(); ++i)
+        if (!states.visible(bindings.seed_of(instances[i].id).mesh_node)) instances.edit(i).mask = 0;
 }
 
 /// Whether the middle of an interval cannot stand for what is evaluated there: materials and the environment.
@@ -133,20 +133,23 @@ static_assert(static_cast<int>(FilterKind::blackman_harris) == static_cast<int>(
 static_assert(static_cast<int>(LightKind::area) == static_cast<int>(kernels::LightKind::area));
 static_assert(static_cast<int>(SpotFalloff::blender) == static_cast<int>(kernels::SpotFalloff::blender));
 
+/// @param hasher  knows what the list shares with other snapshots
 template <class T>
-void add_bytes(Hasher& hasher, const std::vector<T>& values) {
+void add_own(Hasher& hasher, const SharedList<T>& list) {
     static_assert(std::is_trivially_copyable_v<T>);
-    hasher.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+    hasher.add(std::string_view(reinterpret_cast<const char*>(list.own().data()), list.own().size() * sizeof(T)));
 }
 
 std::uint64_t key_of(const SceneSnapshot& snapshot) {
     Hasher hasher;
-    add_bytes(hasher, snapshot.instances);
-    add_bytes(hasher, snapshot.fixed_places);
-    add_bytes(hasher, snapshot.motion.headers);
-    add_bytes(hasher, snapshot.motion.srt);
-    add_bytes(hasher, snapshot.motion.matrices);
-    add_bytes(hasher, snapshot.motion.linear);
+    hasher.add(static_cast<std::int64_t>(snapshot.still_key));
+    add_own(hasher, snapshot.instances);
+    add_own(hasher, snapshot.fixed_places);
+    add_own(hasher, snapshot.motion.headers);
+    add_own(hasher, snapshot.motion.types);
+    add_own(hasher, snapshot.motion.srt);
+    add_own(hasher, snapshot.motion.matrices);
+    add_own(hasher, snapshot.motion.linear);
     for (const auto& mesh : snapshot.deformed) hasher.add(static_cast<std::int64_t>(mesh->version));
     for (int i = 0; i < 3; ++i) hasher.add(snapshot.render_origin[i]);
     return hasher.finish().low;
@@ -159,13 +162,13 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
 
 bool wants_motion(const Shot& shot) { return std::find(shot.output.aovs.begin(), shot.output.aovs.end(), Aov::motion) != shot.output.aovs.end(); }
 
-/// Places of the snapshot's instances and of the camera one frame before `frame`.
+/// Places of the snapshot's own instances and of the camera one frame before `frame`.
 PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, const SceneSnapshot& snapshot) {
     const double time_s = frame.open_s - 1 / shot.timing().fps.value();
     const std::vector<glm::dmat4> nodes = shot.node_transforms(time_s);
     const Bindings& bindings = shot.bindings();
     PreviousPlaces places;
-    for (const SnapshotInstance& seen : snapshot.instances) {
+    for (const SnapshotInstance& seen : snapshot.instances.own()) {
         const Instance instance = bindings.instances[seen.id];
         const int node = instance.seed->node;
         const glm::dmat4 world_from_node = instance.copy ? bindings.node_transform(node, instance.copy, time_s) : nodes[static_cast<std::size_t>(node)];
@@ -247,7 +250,7 @@ private:
         int worst = -1;
         for (std::size_t d = 0; d < snapshot.deformed.size(); ++d)
             if (snapshot.deformed[d]->error_px > vertices_px) vertices_px = snapshot.deformed[d]->error_px, worst = static_cast<int>(d);
-        for (std::size_t i = 0; motion.max_error_px > places_px && i < snapshot.instances.size(); ++i)
+        for (std::size_t i = snapshot.instances.shared_size(); motion.max_error_px > places_px && i < snapshot.instances.size(); ++i)
             if (snapshot.instances[i].deformed == worst) motion.worst = static_cast<std::uint32_t>(i);
         motion.max_error_px = std::max(motion.max_error_px, places_px);
         return vertices_px;

@@ -9,21 +9,25 @@
 #include <glm/glm.hpp>
 
 #include "frame/frame_state.h"
+#include "frame/shared_list.h"
 #include "kernels/camera/shutter.h"
 #include "kernels/scene/motion_types.h"
 #include "kernels/scene/scene_types.h"
 
 namespace kadr {
 
+/// What the frames of an instance are: SRT, or matrices where it is sheared.
+enum class FrameType : std::uint8_t { srt, matrix };
+
 /// Transforms of all instances over the shutter, in HIPRT's own layout: frames evenly spaced on [0, 1], relative to the
-/// render origin. One type for the whole scene, as HIPRT wants it: SRT, or matrices where anything is sheared.
+/// render origin. HIPRT wants one type for the whole scene; here only what is sheared pays for matrices.
 struct MotionFrames {
-    enum class Type { srt, matrix } type = Type::srt;
-    std::vector<kernels::TransformHeader> headers;  ///< [instance]
-    std::vector<kernels::FrameSrt> srt;             ///< filled when type is srt
-    std::vector<kernels::FrameMatrix> matrices;     ///< filled when type is matrix
+    SharedList<kernels::TransformHeader> headers;  ///< [instance] into srt or matrices
+    SharedList<FrameType> types;                   ///< [instance]
+    SharedList<kernels::FrameSrt> srt;
+    SharedList<kernels::FrameMatrix> matrices;
     /// Whether linearly interpolated matrices (two keys) already meet the motion tolerance; [instance].
-    std::vector<std::uint8_t> linear;
+    SharedList<std::uint8_t> linear;
     double max_error_px = 0;                        ///< largest screen-space deviation from the true path
     double bending_error_px = 0;                    ///< the same of instances whose vertices bend, without their vertices
     std::uint32_t worst = 0;                        ///< index of the instance that has max_error_px
@@ -66,21 +70,25 @@ struct EnvironmentSnapshot {
 
 /// Where things were one frame earlier, at that frame's shutter opening: what the motion layer compares with.
 struct PreviousPlaces {
-    std::vector<glm::dmat4> world_from_geometry;   ///< [instance], absolute
+    /// Absolute, of the instances that are the snapshot's own: what snapshots share has not moved.
+    std::vector<glm::dmat4> world_from_geometry;
     kernels::CameraKey camera{};                   ///< relative to the render origin of the snapshot that holds it
     std::vector<std::vector<kernels::Vec3f>> deformed;  ///< [deformed mesh][vertex]
 };
 
 /// What any device needs of one frame, or of one part of its shutter, and nothing else: float, relative to the render
 /// origin.
+///
+/// Instances that look and stand the same throughout the shot come first; snapshots with the same render origin share
+/// them, so a device that finds the object of the frame before need not look at it again.
 struct SceneSnapshot {
     int frame_number = 0;
     double open_s = 0, close_s = 0;            ///< of this part of the shutter
     double weight = 1;                         ///< this part's share of the frame's light; the parts add up to 1
     kernels::Shutter shutter;                  ///< when that light arrives
     glm::dvec3 render_origin{0};
-    std::vector<SnapshotInstance> instances;
-    std::vector<glm::dmat4> fixed_places;      ///< world_from_geometry, double, absolute
+    SharedList<SnapshotInstance> instances;
+    SharedList<glm::dmat4> fixed_places;       ///< world_from_geometry, double, absolute
     MotionFrames motion;                       ///< headers parallel to instances
     /// The whole table [material] that replaces the scene's in this part; empty: the scene's own. Entries beyond the
     /// scene's are copies that single entries of the shot have changed.
@@ -98,6 +106,7 @@ struct SceneSnapshot {
     EnvironmentSnapshot environment;
     std::optional<PreviousPlaces> previous;    ///< only where the shot asks for the motion layer
     kernels::Settings settings;
+    std::uint64_t still_key = 0;               ///< hash of what the lists share with other snapshots
     std::uint64_t geometry_key = 0;            ///< equal keys: instances and motion are those of the previous frame
 };
 

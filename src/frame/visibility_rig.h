@@ -18,6 +18,8 @@ public:
 
     /// Whether everything is always visible.
     bool idle() const { return switches_.empty(); }
+    /// Whether a node, or something above it, is ever hidden.
+    bool ever_hides(int node) const { return switch_of_[static_cast<std::size_t>(node)] >= 0; }
 
     /// The states of all switches at one time.
     class States {

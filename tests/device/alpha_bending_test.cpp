@@ -106,7 +106,7 @@ Image render_bent(const std::vector<DeformationPose>& poses, kernels::AlphaMode 
     const GeometryData g = strip();
     const unsigned geometry = s.add_mesh(g);
     s.add_instance(geometry, leafy(mode), glm::dmat4(1), false);
-    s.snapshot.instances.back().deformed = 0;
+    s.snapshot.instances.edit_back().deformed = 0;
     s.snapshot.deformed.push_back(mesh_of(g, geometry, poses, skinning));
     return s.render(16).image;
 }
@@ -195,7 +195,7 @@ TEST(AlphaBending, ABlurredBendIsItsTrianglesMovingOneByOne) {
             }
             one.indices = {0, 1, 2};
             s.add_moving(s.add_mesh(one), leafy(mode), {glm::dmat4(1), carrying(a, b)});
-            s.snapshot.motion.linear.back() = 1;
+            s.snapshot.motion.linear.edit_back() = 1;
         }
         const Image triangles = s.render(16).image;
 
@@ -204,7 +204,7 @@ TEST(AlphaBending, ABlurredBendIsItsTrianglesMovingOneByOne) {
         without.normals.clear();  // the triangles have none of their neighbours' either
         const unsigned geometry = flat.add_mesh(without);
         flat.add_instance(geometry, leafy(mode), glm::dmat4(1), false);
-        flat.snapshot.instances.back().deformed = 0;
+        flat.snapshot.instances.edit_back().deformed = 0;
         auto bare = std::make_shared<DeformedMesh>(*mesh);
         bare->geometry = geometry;
         for (kernels::Vertex& vertex : bare->vertices) vertex.normal = {0, 0, 0};
@@ -234,7 +234,7 @@ Image render_cut(int uv_set, double slid) {
     if (uv_set == 1) g.uv[1] = std::exchange(g.uv[0], std::vector<kernels::Vec2f>(g.positions.size(), {0.9f, 0.9f}));
     const unsigned geometry = s.add_mesh(g);
     s.add_instance(geometry, glow, glm::dmat4(1), false);
-    s.snapshot.instances.back().deformed = 0;
+    s.snapshot.instances.edit_back().deformed = 0;
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(slid, 0, 0));
     s.snapshot.deformed = {
         mesh_of(g, geometry, {{{glm::dmat4(1), glm::dmat4(1)}, {0}}, {{moved, moved}, {0}}}, Skinning::linear)};

@@ -37,7 +37,7 @@ std::shared_ptr<DeformedMesh> bent(const GeometryData& g, unsigned geometry, uns
 void add_bent(SmallScene& s, const GeometryData& g, const kernels::Material& m, unsigned keys, const Bend& bend, const glm::dmat4& place = glm::dmat4(1)) {
     const unsigned geometry = s.add_mesh(g);
     s.add_instance(geometry, m, place);
-    s.snapshot.instances.back().deformed = static_cast<int>(s.snapshot.deformed.size());
+    s.snapshot.instances.edit_back().deformed = static_cast<int>(s.snapshot.deformed.size());
     auto mesh = bent(g, geometry, keys, bend);
     mesh->deformer = static_cast<unsigned>(s.snapshot.deformed.size());
     s.snapshot.deformed.push_back(mesh);

@@ -34,9 +34,9 @@ struct Frames {
         SmallScene scene;
         for (const Seen& one : seen) {
             scene.add_moving(one.mesh, {}, one.frames);
-            scene.snapshot.instances.back().material = one.mesh;
-            scene.snapshot.instances.back().mask = one.visible ? 0xffffffffu : 0;
-            scene.snapshot.motion.linear.back() = one.linear ? 1 : 0;
+            scene.snapshot.instances.edit_back().material = one.mesh;
+            scene.snapshot.instances.edit_back().mask = one.visible ? 0xffffffffu : 0;
+            scene.snapshot.motion.linear.edit_back() = one.linear ? 1 : 0;
         }
         scene.snapshot.settings.max_bounces = 0;
         scene.snapshot.geometry_key = snapshots.size() + 1;

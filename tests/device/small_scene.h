@@ -112,7 +112,7 @@ struct SmallScene {
         }
         snapshot.instances.push_back(instance);
         MotionFrames& motion = snapshot.motion;
-        motion.type = MotionFrames::Type::matrix;
+        motion.types.push_back(FrameType::matrix);
         motion.headers.push_back({static_cast<unsigned>(motion.matrices.size()), static_cast<unsigned>(frames.size())});
         motion.linear.push_back(0);
         for (std::size_t k = 0; k < frames.size(); ++k) {

@@ -37,7 +37,7 @@ void add_bent(SmallScene& s, unsigned keys, const kernels::Material& m) {
     const GeometryData g = unit_sphere(16);
     const unsigned geometry = s.add_mesh(g);
     s.add_instance(geometry, m, glm::dmat4(1), false);
-    s.snapshot.instances.back().deformed = 0;
+    s.snapshot.instances.edit_back().deformed = 0;
     auto mesh = std::make_shared<DeformedMesh>();
     mesh->geometry = geometry;
     mesh->key_count = keys;

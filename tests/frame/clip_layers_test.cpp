@@ -253,7 +253,7 @@ TEST(ClipLayers, SplitTheShutterWhereALoopJumps) {
     EXPECT_NEAR(parts[0].close_s, 0.4, 1e-12);
     EXPECT_NEAR(parts[0].weight, 0.4, 1e-12);
     // Nothing smears across: 1.6 to 2, then 0 to 0.6 (the render origin is near the camera at z = 5).
-    const auto x = [](const SceneSnapshot& part, double time) { return interpolate(part.motion, part.motion.headers[0], time)[3].x + part.render_origin.x; };
+    const auto x = [](const SceneSnapshot& part, double time) { return interpolate(part.motion, 0, time)[3].x + part.render_origin.x; };
     EXPECT_NEAR(x(parts[0], 0), 1.6, 1e-5);
     EXPECT_NEAR(x(parts[0], 1), 2.0, 1e-5);
     EXPECT_NEAR(x(parts[1], 0), 0.0, 1e-5);

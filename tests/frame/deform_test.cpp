@@ -54,7 +54,7 @@ glm::dvec3 world_of(const SceneSnapshot& snapshot, std::size_t vertex, double u)
         return glm::dvec3(p.x, p.y, p.z);
     };
     const glm::dvec3 p = glm::mix(at(first), at(first + 1), position - static_cast<double>(first));
-    return snapshot.render_origin + glm::dvec3(interpolate(snapshot.motion, snapshot.motion.headers.at(0), u) * glm::dvec4(p, 1));
+    return snapshot.render_origin + glm::dvec3(interpolate(snapshot.motion, 0, u) * glm::dvec4(p, 1));
 }
 
 double pixels_a_metre(const Stage& stage, const SceneSnapshot& snapshot) {

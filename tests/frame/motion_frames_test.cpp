@@ -38,20 +38,21 @@ void expect_well_formed(const SceneSnapshot& snapshot) {
     const MotionFrames& motion = snapshot.motion;
     ASSERT_EQ(motion.headers.size(), snapshot.instances.size());
     ASSERT_EQ(motion.linear.size(), snapshot.instances.size());
+    ASSERT_EQ(motion.types.size(), snapshot.instances.size());
     for (std::size_t i = 0; i < motion.headers.size(); ++i) {
         const auto [first, count] = motion.headers[i];
         ASSERT_GE(count, 1u);
         ASSERT_LE(count, 129u);
         EXPECT_TRUE(!motion.linear[i] || count <= 2);
         for (unsigned k = 0; k < count; ++k) {
-            const bool srt = motion.type == MotionFrames::Type::srt;
+            const bool srt = motion.types[i] == FrameType::srt;
             const float time = srt ? motion.srt[first + k].time : motion.matrices[first + k].time;
             EXPECT_EQ(time, count > 1 ? static_cast<float>(k / (count - 1.0)) : 0.0f);
-            const Decomposition parts = frame_parts(motion, first + k);
+            const Decomposition parts = frame_parts(motion, i, k);
             EXPECT_FALSE(is_singular(parts));
             EXPECT_TRUE(!srt || std::abs(motion.srt[first + k].angle) <= static_cast<float>(kPi));
             if (k == 0) continue;
-            const Decomposition before = frame_parts(motion, first + k - 1);
+            const Decomposition before = frame_parts(motion, i, k - 1);
             EXPECT_LE(glm::degrees(angle_between(before.rotation, parts.rotation)), 10 + 1e-4);  // float angles
             EXPECT_EQ(before.scale.z < 0, parts.scale.z < 0);
         }
@@ -76,7 +77,7 @@ TEST(MotionFrames, NinetyDegreesAboutZTakeXToY) {
     Stage stage;
     stage.node(stage.add_node("a")).rotation = turn(90);
     const SceneSnapshot snapshot = stage.snapshot();
-    const glm::dvec4 moved = interpolate(snapshot.motion, snapshot.motion.headers[0], 0) * glm::dvec4(1, 0, 0, 1);
+    const glm::dvec4 moved = interpolate(snapshot.motion, 0, 0) * glm::dvec4(1, 0, 0, 1);
     EXPECT_LT(glm::distance(moved, glm::dvec4(0, 1, 0, 1)), 1e-6);  // a float angle
 }
 
@@ -89,9 +90,11 @@ TEST(MotionFrames, OneFrameWhenStill) {
     expect_well_formed(snapshot);
     EXPECT_EQ(snapshot.motion.headers[0].frame_count, 1u);
     EXPECT_EQ(snapshot.motion.headers[1].frame_count, 1u);
-    EXPECT_EQ(snapshot.instances[0].fixed_place, -1);
-    EXPECT_EQ(snapshot.instances[1].fixed_place, 0);
-    EXPECT_EQ(stage.snapshot(2).motion.headers[0].frame_count, 2u);
+    EXPECT_EQ(snapshot.instances[0].id, 1u);  // what never moves comes first
+    EXPECT_EQ(snapshot.instances[0].fixed_place, 0);
+    EXPECT_EQ(snapshot.instances[1].fixed_place, -1);
+    EXPECT_EQ(stage.snapshot(2).motion.headers[0].frame_count, 1u);
+    EXPECT_EQ(stage.snapshot(2).motion.headers[1].frame_count, 2u);
 }
 
 TEST(MotionFrames, OneFrameWithoutMotionBlur) {
@@ -161,9 +164,12 @@ TEST(MotionFrames, ShearUnderARotatingStretchedParentUsesMatrices) {
     stage.animate(child).rotation = track<glm::dquat>({{0, turn(0, {1, 1, 1})}, {1, turn(100, {1, 1, 1})}});
     const SceneSnapshot snapshot = stage.snapshot();
     expect_well_formed(snapshot);
-    EXPECT_EQ(snapshot.motion.type, MotionFrames::Type::matrix);
-    EXPECT_TRUE(snapshot.motion.srt.empty());
-    EXPECT_LE(worst_error_px(stage, snapshot, 0, child), 0.1 + 1e-3);
+    // What stands still comes first, and does not pay for the other's shear.
+    EXPECT_EQ(snapshot.instances[0].id, 1u);
+    EXPECT_EQ(snapshot.motion.types[0], FrameType::srt);
+    EXPECT_EQ(snapshot.motion.srt.size(), 1u);
+    EXPECT_EQ(snapshot.motion.types[1], FrameType::matrix);
+    EXPECT_LE(worst_error_px(stage, snapshot, 1, child), 0.1 + 1e-3);
 }
 
 TEST(MotionFrames, MirrorsAndGeometryOffsetsAreKept) {
@@ -175,7 +181,7 @@ TEST(MotionFrames, MirrorsAndGeometryOffsetsAreKept) {
     stage.animate(node).rotation = track<glm::dquat>({{0, turn(-60, {0, 1, 0})}, {1, turn(60, {0, 1, 0})}});
     const SceneSnapshot snapshot = stage.snapshot();
     expect_well_formed(snapshot);
-    EXPECT_EQ(snapshot.motion.type, MotionFrames::Type::srt);
+    EXPECT_EQ(snapshot.motion.types[0], FrameType::srt);
     EXPECT_LE(worst_error_px(stage, snapshot, 0, node), 0.1 + 1e-3);
 }
 

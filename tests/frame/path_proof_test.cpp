@@ -37,7 +37,7 @@ TEST(PathProof, CompositesFollowTheirTruePathWithinTheTolerance) {
         const Stage stage = composite(random);
         for (const SceneSnapshot& part : stage.snapshots()) {
             ASSERT_EQ(part.instances.size(), 1u);
-            EXPECT_EQ(part.motion.type, MotionFrames::Type::matrix);
+            EXPECT_EQ(part.motion.types[0], FrameType::matrix);
             const double tolerance = stage.shot.render.motion_tolerance_px, reported = part.motion.max_error_px;
             EXPECT_LE(worst_error_px(stage, part, 0, 2), tolerance) << "round " << round << ", seed " << kSeed;
             EXPECT_LE(reported, kMotionMargin * tolerance) << "round " << round << ", seed " << kSeed;
@@ -64,7 +64,7 @@ TEST(PathProof, VelocitiesAreThoseOfTheTruePath) {
     for (int i = 0; i < 200; ++i) {
         const double t = time(random), h = 1e-4;
         const glm::dvec4 point(0.5, 0.5, 0.5, 1);
-        const auto is = [&](double at) { return glm::dvec3(interpolate(part.motion, part.motion.headers[0], at) * point); };
+        const auto is = [&](double at) { return glm::dvec3(interpolate(part.motion, 0, at) * point); };
         const auto wanted = [&](double at) { return glm::dvec3(bound.node_transforms(at)[static_cast<std::size_t>(tip)] * point); };
         const glm::dvec3 speed = (is(t + h) - is(t - h)) / (2 * h), truth = (wanted(t + h) - wanted(t - h)) / (2 * h);
         EXPECT_LT(glm::distance(speed, truth), slope) << "at " << t << ", seed " << kSeed;

@@ -146,7 +146,7 @@ double worst_error_px(const Stage& stage, const SceneSnapshot& snapshot, std::si
         glm::dmat4 wanted = world_from_node(time) * glm::translate(glm::dmat4(1), geometry.centre) *
                             glm::scale(glm::dmat4(1), glm::dvec3(geometry.scale));
         wanted[3] -= glm::dvec4(snapshot.render_origin, 0);
-        const glm::dmat4 is = interpolate(snapshot.motion, snapshot.motion.headers[instance], u);
+        const glm::dmat4 is = interpolate(snapshot.motion, instance, u);
         CameraState camera = camera_at(bound, time);
         camera.position -= snapshot.render_origin;
         // Projected point by point, without the sequencer's own bound.

@@ -168,7 +168,10 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     structures_.kept = mesh_scenes_.size() + (same_geometry ? 2 : 0);
     if (!same_geometry) {
         const std::vector<bool> flattened = choose_flattened(snapshot);
-        const bool same_flat = have_frame_ && flattened == flattened_ && snapshot.render_origin == flat_origin_;
+        std::vector<std::uint32_t> flat_ids;
+        for (std::size_t i = 0; i < flattened.size(); ++i)
+            if (flattened[i]) flat_ids.push_back(snapshot.instances[i].id);
+        const bool same_flat = have_frame_ && flattened == flattened_ && flat_ids == flat_ids_ && snapshot.render_origin == flat_origin_;
         if (!same_flat) build_flat(snapshot, flattened);
         ++(same_flat ? structures_.kept : structures_.built);
         geometries_.resize(rigid_geometries_);
@@ -176,8 +179,12 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
         structures_.built += deforming_.built();
         structures_.updated += deforming_.refitted();
         check(device_, "build the acceleration structure of a bending mesh");
-        build_instances(snapshot, flattened);
+        const bool same_still = have_frame_ && flattened == flattened_ && snapshot.instances.shared() == still_.list;
+        build_instances(snapshot, flattened, same_still ? snapshot.instances.shared_size() : 0);
+        if (!same_still) previous_matrices_.clear();
+        still_.list = snapshot.instances.shared();
         flattened_ = flattened;
+        flat_ids_ = std::move(flat_ids);
         flat_origin_ = snapshot.render_origin;
         geometry_key_ = snapshot.geometry_key;
         have_frame_ = true;
@@ -188,6 +195,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.matrices = matrices_.data();
     view_.keys = keys_.data();
     if (!same_geometry || !same_emission) set_emitters(snapshot);
+    if (!same_geometry) list_shown();
     set_lights(snapshot);
     set_previous(snapshot);
     set_requirements();
@@ -213,10 +221,12 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
     view_.previous_matrices = nullptr;
     deforming_.set_previous(snapshot, geometries_);
     if (!snapshot.previous) return;
+    const std::size_t shared = snapshot.instances.shared_size(), known = std::min(previous_matrices_.size(), shared);
     previous_matrices_.resize(snapshot.instances.size());
-    for (std::size_t i = 0; i < previous_matrices_.size(); ++i) {
+    for (std::size_t i = known; i < shared; ++i) previous_matrices_[i] = matrices_[motions_[i].first];
+    for (std::size_t i = shared; i < previous_matrices_.size(); ++i) {
         // Flattened vertices are relative to the render origin already, and have not moved.
-        const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->world_from_geometry[i];
+        const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->world_from_geometry[i - shared];
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 4; ++column)
                 previous_matrices_[i].m[row][column] = static_cast<float>(
@@ -319,65 +329,72 @@ RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
     return handle.get();
 }
 
-void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
-    std::vector<RTCScene> meshes(snapshot.instances.size());  // null: nothing to see, or flattened
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
+/// @param first  instances before it are those of the frame before, with the same meshes in the same places
+void EmbreeScene::build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first) {
+    const std::size_t count = snapshot.instances.size(), shared = snapshot.instances.shared_size();
+    std::vector<RTCScene> meshes(count - first);  // null: nothing to see, or flattened
+    for (std::size_t i = first; i < count; ++i) {
         const SnapshotInstance& source = snapshot.instances[i];
         if (flattened[i] || source.mask == 0 || scene_.geometries[source.geometry].indices.empty()) continue;
-        meshes[i] = source.deformed >= 0 ? deforming_.structure(source) : mesh_scene(source.geometry, source.material);
+        meshes[i - first] = source.deformed >= 0 ? deforming_.structure(source) : mesh_scene(source.geometry, source.material);
     }
-    lay_out_motions(snapshot, flattened);
-    instance_count_ = moving_count_ = 0;
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        instance_count_ += meshes[i] ? 1 : 0;
-        moving_count_ += meshes[i] && motions_[i].count > 1 ? 1 : 0;
+    lay_out_motions(snapshot, flattened, first);
+    instance_count_ = first > 0 ? still_.shown : 0;
+    moving_count_ = 0;
+    for (std::size_t i = first; i < count; ++i) {
+        if (i == shared) still_.shown = instance_count_;
+        instance_count_ += meshes[i - first] ? 1 : 0;
+        moving_count_ += meshes[i - first] && motions_[i].count > 1 ? 1 : 0;
     }
-    upper_.resize(meshes.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, meshes.size(), 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) set_instance(snapshot, i, meshes[i]);
+    if (shared == count) still_.shown = instance_count_;
+    upper_.resize(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, count, 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) set_instance(snapshot, i, meshes[i - first]);
     });
     upper_.commit();
     ++structures_.built;
     check(device_, "build the acceleration structure of the instances");
 }
 
-/// Gives every instance its entries in the tables of matrices and keys.
-void EmbreeScene::lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
+/// Gives every instance from `first` on its entries in the tables of matrices and keys.
+void EmbreeScene::lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first) {
     using Kind = kernels::InstanceMotion::Kind;
-    instances_.assign(snapshot.instances.size(), {});
-    motions_.assign(snapshot.instances.size(), {});
+    const std::size_t count = snapshot.instances.size(), shared = snapshot.instances.shared_size();
+    instances_.resize(count);
+    motions_.resize(count);
     // The first matrix is that of everything flattened.
-    unsigned matrix_count = 1, key_count = 0, next_baked = static_cast<unsigned>(scene_.geometries.size());
-    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
+    TableSizes next = first > 0 ? still_.tables : TableSizes{1, 0, static_cast<unsigned>(scene_.geometries.size())};
+    for (std::size_t i = first; i < count; ++i) {
+        if (i == shared) still_.tables = next;
         const SnapshotInstance& source = snapshot.instances[i];
         instances_[i] = {source.geometry, source.material, source.id};
         if (source.deformed >= 0 && source.mask != 0) instances_[i].geometry = deforming_.geometry(source);
         motions_[i] = {0, 1, Kind::still, true};
         if (flattened[i]) {
-            if (baked_[i]) instances_[i].geometry = next_baked++;
+            if (baked_[i]) instances_[i].geometry = next.geometries++;
             continue;
         }
-        const unsigned count = snapshot.motion.headers[i].frame_count;
+        const unsigned frames = snapshot.motion.headers[i].frame_count;
         const bool linear = is_linear(snapshot.motion, i);
-        unsigned& next = linear ? matrix_count : key_count;
-        motions_[i] = {next, count, !linear ? Kind::keys : count == 1 ? Kind::still : Kind::linear, false};
-        next += count;
+        unsigned& table = linear ? next.matrices : next.keys;
+        motions_[i] = {table, frames, !linear ? Kind::keys : frames == 1 ? Kind::still : Kind::linear, false};
+        table += frames;
     }
-    matrices_.resize(matrix_count);
+    if (shared == count) still_.tables = next;
+    matrices_.resize(next.matrices);
     matrices_[0] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    keys_.resize(key_count);
+    keys_.resize(next.keys);
 }
 
 /// Fills an instance's matrices or keys in and shows its mesh there. @param mesh  null: nothing to show
 void EmbreeScene::set_instance(const SceneSnapshot& snapshot, std::size_t index, RTCScene mesh) {
     const kernels::InstanceMotion& motion = motions_[index];
     if (!motion.identity) {
-        const unsigned first_frame = snapshot.motion.headers[index].first_frame;
         for (unsigned k = 0; k < motion.count; ++k) {
             if (motion.kind == kernels::InstanceMotion::Kind::keys)
-                keys_[motion.first + k] = key_at(snapshot.motion, first_frame + k);
+                keys_[motion.first + k] = key_at(snapshot.motion, index, k);
             else
-                matrices_[motion.first + k] = matrix_at(snapshot.motion, first_frame + k);
+                matrices_[motion.first + k] = matrix_at(snapshot.motion, index, k);
         }
     }
     if (!mesh) return upper_.hide(index);
@@ -471,11 +488,23 @@ void EmbreeScene::set_lights(const SceneSnapshot& snapshot) {
     lights.map.average_luminance *= kernels::luminance(snapshot.environment.radiance);
 }
 
+/// What is shown with which materials, without repetitions.
+void EmbreeScene::list_shown() {
+    std::vector<bool> seen(materials_.empty() ? scene_.materials.size() : materials_.size(), false);
+    shows_colors_ = false;
+    for (const kernels::Instance& instance : instances_) {
+        seen[instance.material] = true;
+        shows_colors_ = shows_colors_ || geometries_[instance.geometry].colors;
+    }
+    shown_materials_.clear();
+    for (unsigned material = 0; material < seen.size(); ++material)
+        if (seen[material]) shown_materials_.push_back(material);
+}
+
 void EmbreeScene::set_requirements() {
     requirements_ = 0;
-    for (const kernels::Instance& instance : instances_)
-        if (has_maps(view_.materials[instance.material]) || geometries_[instance.geometry].colors)
-            requirements_ |= kernels::requirement::kMaps;
+    const auto maps = [&](unsigned material) { return has_maps(view_.materials[material]); };
+    if (shows_colors_ || std::any_of(shown_materials_.begin(), shown_materials_.end(), maps)) requirements_ |= kernels::requirement::kMaps;
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
     if (deforming_.bends()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;

@@ -46,8 +46,8 @@ private:
     void load_environment(const Image& image);
     std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
     void build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
-    void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
-    void lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
+    void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first);
+    void lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first);
     void set_instance(const SceneSnapshot& snapshot, std::size_t index, RTCScene mesh);
     RTCScene mesh_scene(unsigned geometry, unsigned material);
     EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
@@ -55,7 +55,19 @@ private:
     void set_lights(const SceneSnapshot& snapshot);
     void set_emitters(const SceneSnapshot& snapshot);
     void set_previous(const SceneSnapshot& snapshot);
+    void list_shown();
     void set_requirements();
+
+    /// Entries of the tables that are taken.
+    struct TableSizes {
+        unsigned matrices = 1, keys = 0, geometries = 0;
+    };
+    /// The instances that the snapshot before shared with others. They come first in all tables.
+    struct StillPart {
+        SharedList<SnapshotInstance>::Shared list;  ///< also keeps it from being made anew at the same address
+        TableSizes tables;
+        std::uint64_t shown = 0;  ///< instances of the upper level
+    };
 
     RTCDevice device_;
     const Scene& scene_;
@@ -93,6 +105,10 @@ private:
     DeformingMeshes deforming_;
     std::size_t rigid_geometries_ = 0;  ///< of geometries_; those of bending meshes follow
     std::vector<bool> flattened_;  ///< of the frame before
+    std::vector<std::uint32_t> flat_ids_;  ///< of what is flattened
+    StillPart still_;
+    std::vector<unsigned> shown_materials_;  ///< of instances_, each once
+    bool shows_colors_ = false;              ///< some mesh has colours at its vertices
     glm::dvec3 flat_origin_{0};
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0, emitter_key_ = 0;

@@ -52,12 +52,14 @@ bool is_linear(const MotionFrames& motion, std::size_t instance) {
     return count == 1 || (count == 2 && instance < motion.linear.size() && motion.linear[instance]);
 }
 
-kernels::Affine matrix_at(const MotionFrames& motion, std::size_t frame) {
-    return motion.type == MotionFrames::Type::srt ? kernels::compose(key_of(motion.srt[frame])) : matrix_of(motion.matrices[frame]);
+kernels::Affine matrix_at(const MotionFrames& motion, std::size_t instance, std::size_t frame) {
+    const std::size_t at = motion.headers[instance].first_frame + frame;
+    return motion.types[instance] == FrameType::srt ? kernels::compose(key_of(motion.srt[at])) : matrix_of(motion.matrices[at]);
 }
 
-kernels::TransformKey key_at(const MotionFrames& motion, std::size_t frame) {
-    return motion.type == MotionFrames::Type::srt ? key_of(motion.srt[frame]) : key_of(motion.matrices[frame]);
+kernels::TransformKey key_at(const MotionFrames& motion, std::size_t instance, std::size_t frame) {
+    const std::size_t at = motion.headers[instance].first_frame + frame;
+    return motion.types[instance] == FrameType::srt ? key_of(motion.srt[at]) : key_of(motion.matrices[at]);
 }
 
 RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key) {

@@ -10,8 +10,8 @@ namespace kadr {
 // are interpolated linearly, decomposed keys otherwise.
 
 bool is_linear(const MotionFrames& motion, std::size_t instance);
-kernels::Affine matrix_at(const MotionFrames& motion, std::size_t frame);
-kernels::TransformKey key_at(const MotionFrames& motion, std::size_t frame);
+kernels::Affine matrix_at(const MotionFrames& motion, std::size_t instance, std::size_t frame);
+kernels::TransformKey key_at(const MotionFrames& motion, std::size_t instance, std::size_t frame);
 
 /// Embree's quaternion form of a key: translation * rotation * (scale with shear above the diagonal).
 RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key);

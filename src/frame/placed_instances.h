@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "frame/snapshot.h"
+
+namespace kadr {
+
+/// Instances of a snapshot with their frames. Parallel lists are those of SceneSnapshot and MotionFrames.
+struct PlacedInstances {
+    std::vector<SnapshotInstance> instances;
+    std::vector<glm::dmat4> fixed_places;
+    std::vector<kernels::TransformHeader> headers;
+    std::vector<FrameType> types;
+    std::vector<std::uint8_t> linear;
+    std::vector<kernels::FrameSrt> srt;
+    std::vector<kernels::FrameMatrix> matrices;
+    std::uint64_t key = 0;  ///< hash of all lists
+};
+
+/// Hash of the lists of placed instances.
+std::uint64_t key_of(const PlacedInstances& placed);
+
+/// What stands still in a shot, as seen from the last render origins: snapshots of one origin share one object.
+class StillInstances {
+public:
+    /// Null: not known yet.
+    std::shared_ptr<const PlacedInstances> find(const glm::dvec3& origin) const;
+    /// @return what snapshots shall share: where another thread was quicker, its object
+    std::shared_ptr<const PlacedInstances> keep(const glm::dvec3& origin, std::shared_ptr<const PlacedInstances> placed);
+
+private:
+    using Entry = std::pair<glm::dvec3, std::shared_ptr<const PlacedInstances>>;
+    mutable std::mutex mutex_;
+    std::vector<Entry> latest_;  ///< the newest last
+};
+
+}  // namespace kadr
