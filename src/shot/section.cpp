@@ -30,8 +30,9 @@ std::string with_advice(std::string expected, std::string_view advice) {
 }
 
 bool in_range(const Field& field, double value) {
-    return value >= from_natural(field.spec->quantity, field.spec->low) &&
-           value <= from_natural(field.spec->quantity, field.spec->high);
+    // The smallest positive number may round to 0 in another unit.
+    const bool above = field.spec->low == kAboveZero ? value > 0 : value >= from_natural(field.spec->quantity, field.spec->low);
+    return above && value <= from_natural(field.spec->quantity, field.spec->high);
 }
 
 std::string problem_advice(const Field& field, const ParsedQuantity& parsed) {
