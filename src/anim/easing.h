@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 namespace kadr {
 
@@ -14,5 +15,11 @@ double eased(const Ease& ease, double u);
 /// dy/dx at the start (u = 0) or the end (u = 1) of the curve; 0 where it begins or ends vertically, as CSS has it
 /// (Easing Functions Level 2, 2.3).
 double slope_at_end(const Ease& ease, bool at_end);
+
+/// Every u in (0, 1) at which the curve turns, up to down or down to up.
+std::vector<double> turning_points(const Ease& ease);
+
+/// Every u in (0, 1) at which the curve's y has a value; up to rounding, and turning points that only touch it left out.
+std::vector<double> crossings(const Ease& ease, double y);
 
 }  // namespace kadr

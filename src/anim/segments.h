@@ -1,6 +1,6 @@
 #pragma once
 
-// What a track does between two keys: value and slope of each interpolation. Used by track.cpp alone.
+// What a track does between two keys: value and slope of each interpolation. Used by track.cpp and track_extremes.cpp alone.
 
 #include <algorithm>
 #include <numbers>

@@ -17,7 +17,6 @@ namespace kadr {
 namespace {
 
 constexpr double kDefaultFocalMm = 50;
-constexpr double kWidestField = 3.1;  // radians: the picture's plane has to be somewhere
 constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees
 
 double aspect_of(const ImageSpec& image) { return image.pixel_aspect * image.width / image.height; }
@@ -125,11 +124,11 @@ SceneCamera source_at(const BoundShot& shot, double time_s) {
     SceneCamera camera = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(shot.bindings().camera_node)].camera)];
     for (const DrivenProperty& driven : driven_of(shot)) {
         const auto value = [&](double own) { return driven.value(own, time_s, 0); };
-        if (driven.property == Property::camera_yfov) camera.yfov_rad = std::clamp(value(camera.yfov_rad), 1e-6, kWidestField);
+        if (driven.property == Property::camera_yfov) camera.yfov_rad = value(camera.yfov_rad);
         else if (driven.property == Property::camera_xmag) camera.xmag = value(camera.xmag);
         else if (driven.property == Property::camera_ymag) camera.ymag = value(camera.ymag);
-        else if (driven.property == Property::camera_znear) camera.znear = std::max(value(camera.znear), 0.0);
-        else if (driven.property == Property::camera_zfar) camera.zfar = std::max(driven.distance(camera.zfar, time_s, 0), 0.0);
+        else if (driven.property == Property::camera_znear) camera.znear = value(camera.znear);
+        else if (driven.property == Property::camera_zfar) camera.zfar = driven.distance(camera.zfar, time_s, 0);
     }
     return camera;
 }

@@ -139,6 +139,19 @@ Timing with_frames(const Shot& shot, double longest_s) {
     return timing;
 }
 
+std::vector<Diagnostic> limit_warnings(const Scene& scene, const std::vector<BoundScene>& scenes, const Sequence& sequence) {
+    const std::vector<int>& frames = sequence.timing().frames;
+    if (frames.empty()) return {};
+    return warnings_of_limits(scene, scenes, sequence.frame(frames.front()).open_s, sequence.frame(frames.back()).close_s);
+}
+
+void check_ranges(const Shot& shot, const Sequence& sequence, std::vector<Diagnostic>& problems) {
+    // The motion layer looks at the frame before.
+    const double lead_s = shot.output.has(Aov::motion) ? 1 / sequence.timing().fps.value() : 0;
+    const std::vector<Diagnostic> found = values_out_of_range(shot.limited_tracks, sequence, lead_s);
+    problems.insert(problems.end(), found.begin(), found.end());
+}
+
 std::vector<InstanceSeed> seeds_of(const Scene& scene, const NodeRig& rig, const MaterialRig& materials) {
     std::vector<InstanceSeed> seeds;
     for (std::size_t node = 0; node < scene.nodes.size(); ++node)
@@ -292,11 +305,14 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     check_camera(shot, scene, scenes, camera_node, problems);
     check_integrator(shot, problems);
     check_lens(shot, problems);
-    collect(problems, [&] { timing_ = with_frames(shot, longest_clip_s(scenes)); });
+    collect(problems, [&] {
+        timing_ = with_frames(shot, longest_clip_s(scenes));
+        sequence_ = Sequence(timing_, shot.shutter);
+        check_ranges(shot, sequence_, problems);
+    });
     drop_repeated(problems);
     if (!problems.empty()) throw InputError(std::move(problems));
 
-    sequence_ = Sequence(timing_, shot.shutter);
     auto bindings = std::make_shared<Bindings>(
         Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
     bindings->visibility = VisibilityRig(shot, scene, scenes, bindings->properties);
@@ -311,6 +327,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);
+    for (Diagnostic& warning : limit_warnings(scene, scenes, sequence_)) warnings_.push_back(std::move(warning));
     bindings_ = std::move(bindings);
 }
 

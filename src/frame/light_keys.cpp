@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -85,11 +84,11 @@ SceneLight source_at(const BoundShot& shot, int node, double time_s) {
     SceneLight light = shot.scene().lights[static_cast<std::size_t>(light_of(shot, node))];
     for (const DrivenProperty& driven : driven_of(shot, node)) {
         const auto value = [&](const auto& own) { return driven.value(own, time_s, 0); };
-        if (driven.property == Property::light_color) light.color = glm::max(value(light.color), glm::dvec3(0));
-        else if (driven.property == Property::light_intensity) light.intensity = std::max(value(light.intensity), 0.0);
-        else if (driven.property == Property::light_range) light.range_m = std::max(driven.distance(light.range_m, time_s, 0), 0.0);
-        else if (driven.property == Property::light_inner) light.inner_rad = std::max(value(light.inner_rad), 0.0);
-        else if (driven.property == Property::light_outer) light.outer_rad = std::clamp(value(light.outer_rad), 0.0, 0.5 * std::numbers::pi);
+        if (driven.property == Property::light_color) light.color = value(light.color);
+        else if (driven.property == Property::light_intensity) light.intensity = value(light.intensity);
+        else if (driven.property == Property::light_range) light.range_m = driven.distance(light.range_m, time_s, 0);
+        else if (driven.property == Property::light_inner) light.inner_rad = value(light.inner_rad);
+        else if (driven.property == Property::light_outer) light.outer_rad = value(light.outer_rad);
     }
     return light;
 }

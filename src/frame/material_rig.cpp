@@ -39,27 +39,26 @@ struct Factors {
     kernels::Material made() const;
 };
 
-float clamped(double value) { return static_cast<float>(std::clamp(value, 0.0, 1.0)); }
+float to_float(double value) { return static_cast<float>(value); }
 
 void Factors::set(const DrivenProperty& driven, double time_s) {
     TextureTransform& transform = source.transforms[static_cast<std::size_t>(driven.use)];
     const auto value = [&]<class T>(const T& own) { return driven.value(own, time_s, 0); };
-    const auto replace = [&](float& factor) { factor = static_cast<float>(value(static_cast<double>(factor))); };
-    const auto replace_share = [&](float& factor) { factor = clamped(value(static_cast<double>(factor))); };
+    const auto replace = [&](float& factor) { factor = to_float(value(static_cast<double>(factor))); };
     switch (driven.property) {
         case Property::base_color: {
             const glm::dvec3 color = value(glm::dvec3(material.base_color.x, material.base_color.y, material.base_color.z));
-            material.base_color = {clamped(color.x), clamped(color.y), clamped(color.z)};
+            material.base_color = {to_float(color.x), to_float(color.y), to_float(color.z)};
             return;
         }
-        case Property::alpha: return replace_share(material.alpha);
-        case Property::metallic: return replace_share(material.metallic);
-        case Property::roughness: return replace_share(material.roughness);
+        case Property::alpha: return replace(material.alpha);
+        case Property::metallic: return replace(material.metallic);
+        case Property::roughness: return replace(material.roughness);
         case Property::emissive: source.emissive = value(source.emissive); return;
         case Property::emissive_strength: source.emissive_strength = value(source.emissive_strength); return;
         case Property::alpha_cutoff: return replace(material.alpha_cutoff);
         case Property::normal_scale: return replace(material.normal_scale);
-        case Property::occlusion_strength: return replace_share(material.occlusion_strength);
+        case Property::occlusion_strength: return replace(material.occlusion_strength);
         case Property::texture_offset: transform.offset = value(transform.offset); return;
         case Property::texture_rotation: transform.rotation_rad = value(transform.rotation_rad); return;
         case Property::texture_scale: transform.scale = value(transform.scale); return;
@@ -69,7 +68,7 @@ void Factors::set(const DrivenProperty& driven, double time_s) {
 
 kernels::Material Factors::made() const {
     kernels::Material result = material;
-    const glm::dvec3 emission = glm::max(source.emissive * source.emissive_strength, glm::dvec3(0));
+    const glm::dvec3 emission = source.emissive * source.emissive_strength;
     result.emission = {static_cast<float>(emission.x), static_cast<float>(emission.y), static_cast<float>(emission.z)};
     kernels::TextureSlot* const slots[] = {&result.base_color_texture, &result.metallic_roughness_texture, &result.normal_texture,
                                            &result.emissive_texture, &result.occlusion_texture};

@@ -11,10 +11,10 @@ void append(std::vector<double>& all, const std::vector<double>& more) { all.ins
 }  // namespace
 
 double DrivenProperty::distance(double own, double time_s, double clip_offset_s) const {
-    const double mixed = value(own, time_s, clip_offset_s);
-    if (own > 0 || !layers) return mixed;
-    const double share = 1 - (value(1.0, time_s, clip_offset_s) - mixed);  // of the layers: the rest is the own value's
-    return share > 1e-9 ? mixed / (share * share) : 0;
+    const double mean = mixed(own, time_s, clip_offset_s);
+    if (own > 0 || !layers) return std::max(mean, 0.0);
+    const double share = 1 - (mixed(1.0, time_s, clip_offset_s) - mean);  // of the layers: the rest is the own value's
+    return share > 1e-9 ? std::max(mean, 0.0) / (share * share) : 0;
 }
 
 std::vector<double> DrivenProperty::discontinuities(double begin_s, double end_s, double clip_offset_s) const {

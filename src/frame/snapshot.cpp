@@ -160,8 +160,6 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
                                 "expected a slower rotation or a shorter shutter"));
 }
 
-bool wants_motion(const Shot& shot) { return std::find(shot.output.aovs.begin(), shot.output.aovs.end(), Aov::motion) != shot.output.aovs.end(); }
-
 /// Places of the snapshot's own instances and of the camera one frame before `frame`.
 PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, const SceneSnapshot& snapshot) {
     const double time_s = frame.open_s - 1 / shot.timing().fps.value();
@@ -188,7 +186,7 @@ public:
 
     std::vector<SceneSnapshot> make() {
         for (const Part& part : split(shot_, frame_)) add(part, 0);
-        if (wants_motion(shot_.shot()))
+        if (shot_.shot().output.has(Aov::motion))
             for (SceneSnapshot& snapshot : snapshots_) snapshot.previous = places_before(shot_, frame_, snapshot);
         return std::move(snapshots_);
     }

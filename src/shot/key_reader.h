@@ -116,7 +116,9 @@ std::optional<Track<T>> read_track(const Field& field, const KeyValues<T>& value
     if (!field) return std::nullopt;
     if (field.node->is_map()) {
         auto keyed = read_keyed_track(field, values);
-        return keyed ? std::optional(std::move(keyed->track)) : std::nullopt;
+        if (!keyed) return std::nullopt;
+        note_limits(field, keyed->track);
+        return std::move(keyed->track);
     }
     const auto constant = values.value(field);
     return constant ? std::optional(Track<T>(*constant)) : std::nullopt;

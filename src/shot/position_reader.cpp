@@ -73,12 +73,15 @@ void check_fractions(const Field& at, const Track<double>& track) {
     }
 }
 
+/// What a fraction of a path that does not go round may be.
+constexpr FieldSpec kOpenPath{.path = "motion.at", .low = 0, .high = 1};
+
 std::optional<Track<double>> read_fraction(const Section& section, bool closed) {
     const Field at = section["at"];
     if (!at) return read_journey(section, 1, "at");
     refuse_beside_track(section, "at");
     auto track = read_number_track(at);
-    if (track && !closed) check_fractions(at, *track);
+    if (track && !closed) check_fractions(at, *track), note_limits(at, *track, kOpenPath);
     return track;
 }
 

@@ -9,6 +9,7 @@
 
 #include "anim/timing.h"
 #include "shot/schema.h"
+#include "shot/track_limits.h"
 #include "shot/yaml_document.h"
 
 namespace kadr {
@@ -40,6 +41,7 @@ struct ReadContext {
     Problems problems;
     Timing timing;     ///< read first: times in frames need its rate
     std::string name;  ///< of the shot
+    std::vector<LimitedTrack> limited_tracks;
 };
 
 /// A value of the document, what the format says about it, and how messages call it.

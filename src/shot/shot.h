@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "anim/transform.h"
 #include "base/error.h"
 #include "shot/instances_spec.h"
+#include "shot/track_limits.h"
 
 namespace kadr {
 
@@ -217,6 +219,7 @@ struct OutputSpec {
     std::vector<Aov> aovs;
     int png_bits = 8;  ///< 8 or 16
     std::optional<VideoSpec> video;
+    bool has(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
     bool operator==(const OutputSpec&) const = default;
 };
 
@@ -242,6 +245,7 @@ struct Shot {
     RenderSpec render;
     ViewSpec view;
     OutputSpec output;
+    std::vector<LimitedTrack> limited_tracks;  ///< of what is above, for the check that needs the frame range
     std::vector<Diagnostic> warnings;
 };
 

@@ -69,6 +69,7 @@ Shot parse_shot_text(std::string_view text, const std::filesystem::path& path, c
     errors.insert(errors.end(), unusable.begin(), unusable.end());
     if (!errors.empty()) throw InputError(std::move(errors));
     shot.warnings = context.problems.take_warnings();
+    shot.limited_tracks = std::move(context.limited_tracks);
     return shot;
 }
 

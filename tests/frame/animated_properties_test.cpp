@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "frame/bindings.h"
+#include "shot/schema.h"
 #include "stage.h"
 
 namespace kadr {
@@ -219,6 +220,117 @@ TEST(Pointers, OfTwoClipsTheLastWins) {
     stage.scene.files[0].clip_count = 2;
     stage.scene.clips[1].properties[0].track = track<double>({{0, 7}});
     EXPECT_FLOAT_EQ(stage.snapshot().light_keys.front().radiance.x, 7);
+}
+
+TEST(TrackLimits, AreCheckedWhereTheFrameRangeIsKnown) {
+    Stage stage;
+    stage.shot.shutter = {0, 0.5};
+    Track<double> falling = track<double>({{0, 8}, {1, 4}});
+    falling.before = falling.after = Extrapolation::continued;
+    stage.shot.limited_tracks.push_back({"lights.bulb.intensity", {{"stage.yaml", 20, 3}, {}, {}, 1, {}, false}, find_field("lights.intensity"), {falling}});
+    EXPECT_EQ(test::message_of([&] { stage.bind(); }), "no error");
+    stage.shot.timing.frames = {0, 2};
+    EXPECT_EQ(test::message_of([&] { stage.bind(); }),
+              "stage.yaml:20:3: error: lights.bulb.intensity is -2 cd at 2.5 s (frame 2.5)\n"
+              "  expected at least 0 cd; the track goes on with its end's slope; use hold, or a key where it should stop");
+    // Without a range the clips say how long the shot is.
+    stage.shot.frames_given = false;
+    EXPECT_EQ(test::message_of([&] { stage.bind(); }), "no error");
+    add_lamp(stage);
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 8}}));
+    EXPECT_NE(test::message_of([&] { stage.bind(); }).find("is -3994 cd at 1000.5 s (frame 1000.5)"), std::string::npos);
+}
+
+TEST(TrackLimits, TheMotionLayerLooksAFrameBack) {
+    Stage stage;
+    Track<double> rising = track<double>({{0, 4}, {1, 8}});
+    rising.before = Extrapolation::continued;
+    stage.shot.limited_tracks.push_back({"camera.focus", {{"stage.yaml", 20, 3}, {}, {}, 1, {}, false}, find_field("camera.focus"), {rising}});
+    EXPECT_EQ(test::message_of([&] { stage.bind(); }), "no error");
+    stage.shot.output.aovs = {Aov::motion};
+    EXPECT_NE(test::message_of([&] { stage.bind(); }).find("camera.focus is 0 m at -1 s (frame -1)"), std::string::npos);
+}
+
+/// What binding warns of, without the warnings about other things.
+std::string limit_warnings(const Stage& stage) {
+    std::string text;
+    const std::vector<Diagnostic> warnings = stage.bind().warnings();
+    for (const Diagnostic& warning : warnings)
+        if (warning.found.find("drives") != std::string::npos) text += warning.text() + "\n";
+    return text;
+}
+
+TEST(PointerLimits, HoldWhatAClipDrivesBeyondAndSaySo) {
+    Stage stage;
+    stage.scene.files[0].path = "stage.glb";
+    add_lamp(stage);
+    stage.scene.lights[0].name = "Lamp";
+    stage.shot.timing.frames = {0, 1, 2, 3};
+    drive(stage, Property::light_intensity, 0, track<double>({{0, 8}, {2, -8}, {4, 8}}));
+    EXPECT_FLOAT_EQ(stage.snapshot(0).light_keys.front().radiance.x, 8);
+    EXPECT_FLOAT_EQ(stage.snapshot(1).light_keys.front().radiance.x, 0);
+    EXPECT_FLOAT_EQ(stage.snapshot(2).light_keys.front().radiance.x, 0);
+    EXPECT_EQ(limit_warnings(stage), "stage.glb: warning: clip 'clip 0' drives the intensity of light 'Lamp' to -8 at 2 s of the clip\n  expected at least 0; the property is held there\n");
+    stage.shot.timing.frames = {0};  // 8 to 0: what comes later is not played
+    EXPECT_EQ(limit_warnings(stage), "");
+    stage.shot.timing.frames = {0, 1};  // ends at -8
+    stage.shot.scenes[0].layers.push_back(stage.shot.scenes[0].layers[0]);
+    EXPECT_NE(limit_warnings(stage), "");
+    EXPECT_EQ(limit_warnings(stage).find("drives"), limit_warnings(stage).rfind("drives"));  // two layers play the same channel
+    for (ClipLayer& layer : stage.shot.scenes[0].layers) layer.weight = Track<double>(0.0);
+    EXPECT_EQ(limit_warnings(stage), "");
+}
+
+TEST(PointerLimits, HoldTheMixOfLayersNotItsParts) {
+    Stage stage;
+    add_lamp(stage);
+    stage.scene.lights[0].intensity = 8;
+    stage.shot.scenes[0].layers[0].weight = Track<double>(0.5);
+    drive(stage, Property::light_intensity, 0, track<double>({{0, -2}}));
+    EXPECT_FLOAT_EQ(stage.snapshot().light_keys.front().radiance.x, 3);
+}
+
+TEST(PointerLimits, AreCheckedBetweenTheKeysOfACubic) {
+    Stage stage;
+    add_lamp(stage);
+    Track<double> swing = track<double>({{0, 1}, {1, 1}}, Interpolation::cubic);
+    swing.keys[0].out_tangent = -8, swing.keys[1].in_tangent = 8;
+    drive(stage, Property::light_intensity, 0, swing);
+    EXPECT_NE(limit_warnings(stage).find("drives the intensity of light 0 to -1 at 0.5 s of the clip"), std::string::npos) << limit_warnings(stage);
+    stage.shot.scenes[0].layers[0].speed = 0;
+    EXPECT_EQ(limit_warnings(stage), "");  // stands at its first key
+    stage.shot.scenes[0].layers[0].start_s = 0.25;
+    EXPECT_NE(limit_warnings(stage).find("to -0.5 at 0.25 s"), std::string::npos) << limit_warnings(stage);
+}
+
+TEST(PointerLimits, EveryPropertyHasItsOwn) {
+    Stage stage;
+    stage.add_node("cube");
+    stage.scene.material_names = {"Paint"};
+    stage.scene.material_sources.resize(1);
+    stage.scene.material_sources[0].index = 4;
+    stage.scene.material_sources[0].emissive = {1, 1, 1};
+    stage.scene.files[0].material_count = 1;
+    drive(stage, Property::base_color, 4, track<glm::dvec3>({{0, {0.5, 1.5, -0.5}}}));
+    drive(stage, Property::roughness, 4, track<double>({{0, 1.25}}));
+    drive(stage, Property::metallic, 4, track<double>({{0, -1}}));
+    drive(stage, Property::emissive_strength, 4, track<double>({{0, -3}}));
+    drive(stage, Property::normal_scale, 4, track<double>({{0, -2}}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    const kernels::Material& m = snapshot.materials.at(snapshot.instances.at(0).material);
+    EXPECT_EQ(m.base_color.x, 0.5f);
+    EXPECT_EQ(m.base_color.y, 1);
+    EXPECT_EQ(m.base_color.z, 0);
+    EXPECT_EQ(m.roughness, 1);
+    EXPECT_EQ(m.metallic, 0);
+    EXPECT_EQ(m.emission.x, 0);
+    EXPECT_EQ(m.normal_scale, -2);
+    const std::string warnings = limit_warnings(stage);
+    EXPECT_NE(warnings.find("the base colour of material 'Paint' to 1.5 at 0 s of the clip\n  expected 0 to 1; the property is held there"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("the roughness of material 'Paint' to 1.25"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("the metallic factor of material 'Paint' to -1"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("the emissive strength of material 'Paint' to -3"), std::string::npos) << warnings;
+    EXPECT_EQ(warnings.find("normal"), std::string::npos) << warnings;
 }
 
 }  // namespace
