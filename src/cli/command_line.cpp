@@ -28,7 +28,7 @@ struct RawOptions {
     int frame = 0, threads = 0, samples = 0;
     std::string time, frames, sheet, from;
     bool onion = false, path = false;
-    std::string limits, view, fps, time_budget_shot;
+    std::string limits, view, fps, time_budget_shot, sweep;
 };
 
 int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
@@ -147,6 +147,7 @@ private:
     void add_describe();
     void add_smoke();
     void add_compare();
+    void add_measure();
     void add_info();
     void add_devices();
 
@@ -157,6 +158,7 @@ private:
     void fill_in();
     void fill_preview();
     void fill_compare();
+    void fill_measure();
     void fill_overrides(RenderOptions& options) const;
 
     CLI::App app_{"kadr renders animated shots of glTF scenes to images and video.", "kadr"};
@@ -177,6 +179,7 @@ Parser::Parser() {
     add_describe();
     add_smoke();
     add_compare();
+    add_measure();
     add_info();
     add_devices();
 }
@@ -219,6 +222,7 @@ void Parser::add_render() {
     app->add_option("--default-video", options.default_video,
                     "video file where neither the shot nor --video names one; {name} is the shot's name");
     add_overrides(app);
+    app->add_option("--quality", options.overrides.quality, "draft, preview, final or reference: `kadr describe quality`");
     app->add_option("--max-error", options.overrides.max_error,
                     "sample each pixel until its standard error on the display (0 to 1) is below this: 0.01");
     app->add_option("--time-budget", options.overrides.time_budget, "wall time for a frame: 20s");
@@ -295,6 +299,22 @@ void Parser::add_compare() {
         ->check(CLI::Range(-100.0, 100.0));
     app->add_option("--pixels-per-degree", options.difference.pixels_per_degree, "how large the viewer sees a pixel")
         ->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+    add_device(app);
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_measure() {
+    CLI::App* app = add(Command::measure, "measure", "what accuracy costs in a shot: a page of curves, tables, pictures and advice",
+                        "kadr measure shots/room.yaml --quick\n"
+                        "  kadr measure shots/room.yaml --sweep samples,bounces --frames 0,40 --output room.measure");
+    MeasureOptions& options = invocation_.measure;
+    add_shot(app);
+    app->add_option("--output", options.output, "folder of the report (default: NAME.measure in the working folder)");
+    app->add_flag("--quick", options.quick, "smaller, fewer frames and values: under a minute for a shot such as the samples");
+    app->add_option("--frames", invocation_.render.overrides.frames, "frames to measure: 0,40-41 (default: some of the shot's)");
+    app->add_option("--sweep", raw_.sweep, "some of samples, bounces, integrator, motion_tolerance, clamp (default: all)");
+    add_set(app);
+    app->add_option("--size", raw_.size, "WIDTHxHEIGHT in pixels (default: the shot's, at most 320 pixels long, 128 with --quick)");
     add_device(app);
     app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
@@ -420,11 +440,18 @@ void Parser::fill_compare() {
     if (!raw_.fps.empty()) compare.fps = parse_fps(raw_.fps);
 }
 
+void Parser::fill_measure() {
+    if (!commands_[Command::measure]->parsed()) return;
+    invocation_.measure.render = invocation_.render;
+    invocation_.measure.axes = parse_axes(raw_.sweep);
+}
+
 void Parser::fill_in() {
     fill_overrides(invocation_.render);
     if (!raw_.time_budget_shot.empty()) invocation_.render.overrides.time_budget_shot = fmt::format("{} s", parse_duration(raw_.time_budget_shot, "--time-budget-shot"));
     fill_preview();
     fill_compare();
+    fill_measure();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());
     invocation_.smoke.shots = invocation_.shots;
     invocation_.smoke.device = invocation_.render.device;

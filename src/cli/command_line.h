@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "measure/compare_job.h"
+#include "measure/measure_job.h"
 #include "render/render_job.h"
 #include "render/smoke.h"
 
 namespace kadr {
 
-enum class Command { render, preview, check, describe, smoke, compare, info, devices };
+enum class Command { render, preview, check, describe, smoke, compare, measure, info, devices };
 
 /// What the user asked for. Only the members of `command` are filled in.
 struct Invocation {
@@ -19,6 +20,7 @@ struct Invocation {
     PreviewOptions preview;
     SmokeOptions smoke;
     CompareOptions compare;
+    MeasureOptions measure;
     std::vector<std::filesystem::path> shots;    ///< check
     std::filesystem::path file;                  ///< info
     std::filesystem::path junit;

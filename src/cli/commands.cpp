@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -176,6 +177,47 @@ int run_compare(const Invocation& invocation) {
     return summary.failed ? kFailed : kDone;
 }
 
+std::string row_of(const MeasuredVariant& v) {
+    return fmt::format("{:<26} {:>9.3f} {:>8.4f} {:>8.4f} {:>10.3g} {:>10.3g} {:>10.2g}\n", fmt::format("{} {}", v.variant.axis, v.variant.value), v.seconds, v.error.flip,
+                       v.error.ssim, v.error.relmse, v.error.noise, v.error.bias);
+}
+
+void print_measured(const Invocation& invocation, const MeasuredVariant& v, int done, int count) {
+    if (invocation.json)
+        print(json_line({{"event", "variant"}, {"axis", v.variant.axis}, {"value", v.variant.value}, {"done", done}, {"count", count}, {"seconds", v.seconds},
+                         {"flip", v.error.flip}, {"ssim", v.error.ssim}, {"relmse", v.error.relmse}, {"noise", v.error.noise}, {"bias", v.error.bias}}));
+    else
+        print(row_of(v));
+    std::fflush(stdout);
+}
+
+int run_measure(const Invocation& invocation) {
+    const std::unique_ptr<Reporter> reporter = make_reporter(invocation.json, false);
+    MeasureEvents events;
+    events.render = reporter->events();
+    events.render.frame_done = [](const FrameReport&) {};
+    std::set<std::string> warned;  // every variant would say the same again
+    events.render.warning = [&](const Diagnostic& warning) {
+        if (warned.insert(warning.text()).second) reporter->warning(warning);
+    };
+    if (!invocation.json)
+        print(fmt::format("{:<26} {:>9} {:>8} {:>8} {:>10} {:>10} {:>10}\n", "settings", "s a frame", "FLIP", "SSIM", "relMSE", "noise", "bias"));
+    events.variant_done = [&](const MeasuredVariant& variant, int done, int count) {
+        reporter->clear();
+        print_measured(invocation, variant, done, count);
+    };
+    const Measurement measurement = measure(invocation.measure, events);
+    reporter->clear();
+    const Recommendation& advice = measurement.recommendation;
+    if (!invocation.json) print(fmt::format("{}\n{}\n{}\n", row_of(advice.measured), advice.text, advice.yaml()));
+    const std::filesystem::path page = write_report(measurement);
+    if (invocation.json)
+        print(json_line({{"event", "summary"}, {"page", page.string()}, {"advice", advice.text}, {"yaml", advice.yaml()}}));
+    else
+        print(fmt::format("report: {}\n", page.string()));
+    return kDone;
+}
+
 int run_info(const Invocation& invocation) {
     const Metadata metadata = describe_image(invocation.file);
     if (invocation.json) {
@@ -204,7 +246,7 @@ int run_command(const Invocation& invocation) {
     static const std::map<Command, int (*)(const Invocation&)> kCommands = {
         {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
         {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::compare, run_compare},
-        {Command::info, run_info},
+        {Command::measure, run_measure}, {Command::info, run_info},
         {Command::devices, run_devices},
     };
     return kCommands.at(invocation.command)(invocation);

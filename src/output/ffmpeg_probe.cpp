@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "output/atomic_file.h"
+#include "output/cache_folder.h"
 #include "output/child_process.h"
 
 namespace kadr {
@@ -22,20 +22,6 @@ namespace fs = std::filesystem;
 // First line of a cache file; a new number makes old files unread.
 constexpr const char* kCacheFormat = "kadr ffmpeg probe 2";
 constexpr const char* kEncoders = "encoders";
-
-/// A variable's value; an empty one counts as unset.
-std::optional<fs::path> folder_from(const char* variable) {
-    const char* value = std::getenv(variable);
-    if (!value || !*value) return std::nullopt;
-    return fs::path(value);
-}
-
-std::optional<fs::path> cache_folder() {
-    if (const auto own = folder_from("KADR_CACHE")) return own;
-    if (const auto shared = folder_from("XDG_CACHE_HOME")) return *shared / "kadr";
-    if (const auto home = folder_from("HOME")) return *home / ".cache" / "kadr";
-    return std::nullopt;
-}
 
 std::string identity_of(const fs::path& program) {
     struct stat status {};

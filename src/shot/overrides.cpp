@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "base/text.h"
+#include "shot/quality.h"
 
 namespace kadr {
 
@@ -148,6 +149,17 @@ public:
         for (const int side : {width, height}) list.items.push_back(scalar_node(source, std::to_string(side), false));
         put(source, key, std::move(list));
     }
+    /// The values of a step replace the document's, and its name stands there.
+    void put_quality(const std::string& name) {
+        put_text("--quality", "render.quality", name, true);
+        if (const QualityBlock* block = find_quality(name)) lay_block(*block, true);
+    }
+    /// The values of the document's own step, where it does not give them.
+    void fill_quality() {
+        YamlNode* render = find_entry_value(document_.root, "render");
+        const YamlNode* name = render ? render->find("quality") : nullptr;
+        if (const QualityBlock* block = name && name->is_scalar() ? find_quality(name->text) : nullptr) lay_block(*block, false);
+    }
     /// A number of samples, or what decides it. `--max-error` keeps the file's number as the most: it makes a render cheaper,
     /// never dearer. A time budget is there to be used: the number of a file does not end it.
     void put_samples(const ShotOverrides& overrides) {
@@ -185,6 +197,15 @@ public:
     std::vector<Diagnostic> take_problems() { return std::move(problems_); }
 
 private:
+    void lay_block(const QualityBlock& block, bool replaces) {
+        for (const auto& [key, value] : block.values) {
+            YamlNode* render = find_entry_value(document_.root, "render");
+            if (render && render->kind != YamlNode::Kind::null && !render->is_map()) return;  // refused as it stands
+            if (!replaces && render && render->find(key)) continue;
+            const YamlSource& source = document_.add_source(value, fmt::format("quality {}: {}: {}", block.name, key, value), folder_, true);
+            put(source, fmt::format("render.{}", key), parse_yaml(source));
+        }
+    }
     static YamlNode* find_entry_value(YamlNode& node, const char* key) {
         YamlEntry* entry = node.is_map() ? find_entry(node, key) : nullptr;
         return entry ? &entry->value : nullptr;
@@ -212,10 +233,12 @@ std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverri
                                         const std::filesystem::path& working_folder, const char* size_key) {
     Overrides apply(document, working_folder);
     for (const auto& [path, value] : overrides.nodes) apply.put_node(path, value);
+    if (!overrides.quality.empty()) apply.put_quality(overrides.quality);
     for (const auto& [path, value] : overrides.set) apply.set(path, value);
     if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);
     if (!overrides.output.empty()) apply.put_text("--output", "output.frames", overrides.output, true);
     apply.put_samples(overrides);
+    if (std::string_view(size_key) == kShotSize) apply.fill_quality();  // a reel has no render section
     if (overrides.width > 0 && overrides.height > 0) apply.put_size(size_key, overrides.width, overrides.height);
     if (!overrides.video.empty()) apply.put_video(overrides.video);
     return apply.take_problems();

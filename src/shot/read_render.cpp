@@ -114,6 +114,7 @@ void read_exposure(const Section& section, ViewSpec& view) {
 RenderSpec read_render(const Section& shot) {
     RenderSpec render;
     const Section section = shot.section("render");
+    read_choice_index(section["quality"]);  // its values are laid under the document before it is read
     const Field integrator = section["integrator"];
     if (integrator) render.integrator_where = location_of(integrator.node->place);
     assign(render.integrator, read_choice<Integrator>(integrator));

@@ -33,6 +33,7 @@ SplitOverrides split(const ShotOverrides& all) {
     parts.reel.video = all.video;
     parts.reel.width = all.width;
     parts.reel.height = all.height;
+    parts.shots.quality = all.quality;
     parts.shots.samples = all.samples;
     parts.shots.max_error = all.max_error;
     parts.shots.time_budget = all.time_budget;

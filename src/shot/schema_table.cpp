@@ -134,6 +134,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "use_scene_lights", .forms = kBoolean, .fallback = "true", .doc = "lights of the glTF files (KHR_lights_punctual)", .example = "use_scene_lights: false"},
 
     {.path = "render", .forms = kSection, .doc = "how the picture is computed", .example = "render: { samples: 256, bounces: 4 }"},
+    {.path = "render.quality", .forms = kChoice, .choices = "draft|preview|final|reference", .doc = "a named block of values for the keys below that are not given; `kadr describe quality`", .example = "quality: preview"},
     {.path = "render.integrator", .forms = kChoice, .choices = "direct|path", .fallback = "path", .doc = "direct: the analytic model (punctual lights, hard shadows); path: full light transport", .example = "integrator: direct"},
     {.path = "render.samples", .forms = kInteger | kSection, .low = 1, .high = 1048576, .fallback = "64", .doc = "samples a pixel; a map samples until the error is small or the time is over", .example = "samples: { max_error: 0.01, at_most: 512 }"},
     {.path = "render.samples.max_error", .forms = kNumber, .low = 1e-6, .high = 1, .doc = "sample each pixel until its standard error is below this, in values of the display (0 to 1)", .example = "max_error: 0.01"},

@@ -23,6 +23,7 @@ struct ShotOverrides {
     std::string max_error;                                 ///< render.samples.max_error; empty: the file's
     std::string time_budget;                               ///< render.samples.time_budget, "20 s"; empty: the file's
     std::string time_budget_shot;                          ///< render.samples.time_budget_shot, "600 s"; empty: the file's
+    std::string quality;                                   ///< a step of the ladder: its values replace the file's
     int width = 0, height = 0;                             ///< 0: the file's
 };
 

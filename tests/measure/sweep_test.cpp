@@ -1,0 +1,65 @@
+#include "measure/sweep.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+
+namespace kadr {
+namespace {
+
+std::vector<std::string> ids(const Sweep& sweep) {
+    std::vector<std::string> names;
+    for (const Variant& variant : sweep.variants) names.push_back(variant.id());
+    return names;
+}
+
+const SweepSize kSmall{16, {4, 16, 64}, true};
+
+TEST(Sweep, StartsWithTheShotAndLeavesItsOwnValuesOut) {
+    RenderSpec render;  // 8 bounces, 0.1 px, no clamps
+    EXPECT_THAT(ids(plan_sweep(render, {}, kSmall)),
+                ::testing::ElementsAre("shot", "samples-4", "samples-64", "bounces-0", "bounces-1", "bounces-2", "bounces-4", "bounces-32", "integrator-direct",
+                                       "motion_tolerance-0.02px", "motion_tolerance-0.5px", "clamp-10", "clamp-3", "clamp-1"));
+    render.bounces = {4, 4, 4, 4};
+    render.clamp_indirect = 3;
+    EXPECT_THAT(ids(plan_sweep(render, {"bounces", "clamp"}, kSmall)),
+                ::testing::ElementsAre("shot", "bounces-0", "bounces-1", "bounces-2", "bounces-32", "clamp-none", "clamp-10", "clamp-1"));
+    render.bounces.glossy = 1;  // four bounces of every kind are another setting then
+    EXPECT_THAT(ids(plan_sweep(render, {"bounces"}, kSmall)), ::testing::Contains("bounces-4"));
+}
+
+TEST(Sweep, ChangesOneSettingAndFixesTheSamples) {
+    const Sweep sweep = plan_sweep(RenderSpec(), {"samples", "motion_tolerance"}, kSmall);
+    using Set = std::vector<std::pair<std::string, std::string>>;
+    EXPECT_EQ(sweep.variants[0].set, (Set{{"render.samples", "16"}}));
+    EXPECT_EQ(sweep.variants[1].set, (Set{{"render.samples", "4"}}));
+    EXPECT_EQ(sweep.variants[3].set, (Set{{"render.motion_tolerance", "0.02 px"}, {"render.samples", "16"}}));
+}
+
+TEST(Sweep, SaysWhatItLeavesOut) {
+    RenderSpec render;
+    render.integrator = Integrator::direct;
+    const Sweep sweep = plan_sweep(render, {"bounces", "integrator"}, kSmall);
+    EXPECT_THAT(ids(sweep), ::testing::ElementsAre("shot", "integrator-path"));
+    ASSERT_EQ(sweep.left_out.size(), 1u);
+    EXPECT_EQ(sweep.left_out[0].reason, "render.integrator is direct, which has none");
+}
+
+std::string refusal(const std::string& list) {
+    try {
+        parse_axes(list);
+    } catch (const InputError& error) {
+        return error.diagnostics().front().text();
+    }
+    return "";
+}
+
+TEST(Sweep, RefusesWhatItCannotVary) {
+    EXPECT_EQ(refusal("samples,bouncs"), "error: --sweep names 'bouncs'\n  expected some of samples, bounces, integrator, motion_tolerance, clamp");
+    EXPECT_EQ(refusal("denoise"), "error: --sweep names 'denoise', which this Kadr has no choice in: there is no denoiser\n  expected some of samples, bounces, integrator, motion_tolerance, clamp");
+    EXPECT_EQ(parse_axes("clamp,samples,clamp"), (std::vector<std::string>{"clamp", "samples"}));
+    EXPECT_TRUE(parse_axes("").empty());
+}
+
+}  // namespace
+}  // namespace kadr
