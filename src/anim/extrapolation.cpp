@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anim/wrapped.h"
+
 namespace kadr {
 
 namespace {
 
-/// x in [0, period), exact but for the last addition.
-double wrapped(double x, double period) {
-    double rest = std::fmod(x, period);
-    if (rest < 0) rest += period;
-    return rest < period ? rest : 0;
-}
-
 bool loops(Extrapolation mode) { return mode == Extrapolation::repeat || mode == Extrapolation::pingpong; }
 
 }  // namespace
+
+double wrapped(double x, double period) {
+    double rest = std::fmod(x, period);
+    if (rest < 0) rest += period;
+    return rest < std::max(period - kTick, 0.5 * period) ? rest : 0;
+}
 
 FoldedTime fold(const KeyedSpan& span, double time_s) {
     if (time_s >= span.first_s && time_s < span.last_s) return {time_s};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "anim/segments.h"
+#include "anim/wrapped.h"
 #include "base/error.h"
 #include "base/text.h"
 
@@ -32,6 +33,22 @@ std::size_t segment_at(const Track<T>& track, double time_s, bool mirrored) {
 template <class T>
 double part_of_segment(const Track<T>& track, std::size_t i, double time_s) {
     return (time_s - track.keys[i].time_s) / segments::seconds_between(track, i, i + 1);
+}
+
+template <class T>
+bool loops(const Track<T>& track) {
+    const auto again = [](Extrapolation mode) { return mode == Extrapolation::repeat || mode == Extrapolation::pingpong; };
+    return again(track.before) || again(track.after);
+}
+
+/// Where a track loops, times within a segment are told apart by ticks, so that one which was folded back from a later pass
+/// gives the very value of the first, and a key is met where it is.
+template <class T>
+double part_by_ticks(const Track<T>& track, std::size_t i, double time_s) {
+    constexpr double kShort = 0x1p-20;  // seconds: between nearer keys a tick might be seen
+    const double seconds = segments::seconds_between(track, i, i + 1), into = time_s - track.keys[i].time_s;
+    if (seconds < kShort) return into / seconds;
+    return std::abs(into - seconds) < kTick ? 1 : std::nearbyint(into / kTick) * kTick / seconds;
 }
 
 template <class T>
@@ -66,10 +83,11 @@ template <class T, class Visit>
 void visit_keys(const Track<T>& track, const SpanPass& pass, double begin_s, double end_s, Visit visit) {
     const double a = pass.to_local(begin_s), b = pass.to_local(end_s);
     // A key more on either side: the interval's ends are rounded.
+    const double margin = loops(track) ? kTick : 0;  // nor does one at an end come in by the rounding of its pass
     const std::size_t low = segment_at(track, std::min(a, b), true), high = segment_at(track, std::max(a, b), false) + 1;
     for (std::size_t n = 0; n <= high - low; ++n) {
         const std::size_t j = pass.mirrored ? high - n : low + n;
-        if (is_inside(pass.to_shot(track.keys[j].time_s), begin_s, end_s)) visit(j);
+        if (is_inside(pass.to_shot(track.keys[j].time_s), begin_s + margin, end_s - margin)) visit(j);
     }
 }
 
@@ -184,7 +202,7 @@ T evaluate(const Track<T>& track, double time_s) {
     const FoldedTime at = fold(span_of(track), time_s);
     if (at.beyond_s != 0) return finished(segments::continued(track, at.beyond_s));
     const std::size_t i = segment_at(track, at.time_s, at.mirrored);
-    const double u = part_of_segment(track, i, at.time_s);
+    const double u = loops(track) ? part_by_ticks(track, i, at.time_s) : part_of_segment(track, i, at.time_s);
     if (track.interpolation == Interpolation::step) return finished(track.keys[u >= 1 && !at.mirrored ? i + 1 : i].value);
     return finished(segments::value_at(track, i, u));
 }

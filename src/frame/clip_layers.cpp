@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anim/wrapped.h"
+
 namespace kadr {
 
 namespace {
-
-/// Value modulo length, in [0, length).
-double wrapped(double value, double length) {
-    const double rest = std::fmod(value, length);
-    return rest < 0 ? std::min(rest + length, std::nextafter(length, 0.0)) : rest;
-}
 
 /// One stretch of clip time, counted from the one that starts at `in`: clip time runs up in it, or down (pingpong).
 double time_in_cell(const PlayingLayer& layer, double cell, double unbounded_s) {
@@ -37,8 +33,10 @@ double PlayingLayer::weight_at(double time_s) const { return std::max(evaluate(w
 double PlayingLayer::clip_time(double time_s, double offset_s) const {
     const double time = unbounded(time_s, offset_s), length = out_s - in_s;
     if (loop == ClipLayer::Loop::hold || !(length > 0)) return std::clamp(time, in_s, out_s);
-    if (loop == ClipLayer::Loop::repeat) return speed < 0 ? out_s - wrapped(out_s - time, length) : in_s + wrapped(time - in_s, length);
-    const double phase = wrapped(time - in_s, 2 * length);
+    // By ticks, so that the same time of a later pass is the same to the last bit; glTF's keys are single floats and lie on them.
+    const auto ticks = [](double seconds) { return std::nearbyint(seconds / kTick) * kTick; };
+    if (loop == ClipLayer::Loop::repeat) return speed < 0 ? out_s - ticks(wrapped(out_s - time, length)) : in_s + ticks(wrapped(time - in_s, length));
+    const double phase = ticks(wrapped(time - in_s, 2 * length));
     return phase <= length ? in_s + phase : std::max(out_s - (phase - length), in_s);
 }
 

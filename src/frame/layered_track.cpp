@@ -5,6 +5,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "anim/wrapped.h"
 #include "frame/decompose.h"
 
 namespace kadr {
@@ -222,12 +223,14 @@ void add_key_times(const LayeredTrack<T>& track, LayerWindows windows, std::vect
     for (const auto& part : track.parts) {
         const LayerWindow& window = windows[static_cast<std::size_t>(part.layer)];
         if (!window.counts) continue;
-        const auto inside = [&](double time) { return time > window.begin_s && time < window.end_s && times.size() < most; };
+        // A key of a loop that lies at an end of the window must not come in by the rounding of its pass.
+        const double margin = window.layer->loop == ClipLayer::Loop::hold ? 0 : kTick;
+        const auto inside = [&](double time) { return time > window.begin_s + margin && time < window.end_s - margin && times.size() < most; };
         for (const double key : key_times(window.layer->weight, window.begin_s, window.end_s))
             if (inside(key)) times.push_back(key);
         for (const ClipPass& pass : window.passes) {
             for (const double key : key_times(*part.track, pass.low_s(), pass.high_s()))
-                if (times.size() < most) times.push_back(pass.shot_time(key));
+                if (const double at = pass.shot_time(key); margin > 0 ? inside(at) : times.size() < most) times.push_back(at);
             if (inside(pass.end_s) && bends_at(*part.track, *window.layer, pass.to_s)) times.push_back(pass.end_s);
             if (&pass == &window.passes.front() && inside(pass.begin_s) && bends_at(*part.track, *window.layer, pass.from_s)) times.push_back(pass.begin_s);
         }

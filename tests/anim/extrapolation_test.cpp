@@ -184,6 +184,19 @@ Track<double> any_track(Extrapolation before, Extrapolation after) {
 }
 double any_time() { return *rc::gen::inRange(-4000, 4000) / 64.0; }
 
+// What makes frames of a loop the same frame: times that differ by the rounding of N / fps and of the period alone.
+TEST(Extrapolation, LoopsRepeatToTheLastBit) {
+    for (const int fps : {24, 25, 30, 60})
+        for (const int period : {7, 24, 50}) {
+            const auto at = [&](int frame) { return static_cast<double>(frame) / fps; };
+            for (const Interpolation interpolation : {Interpolation::step, Interpolation::linear, Interpolation::smooth}) {
+                const auto track = numbers({{at(0), 0.3}, {at(2), 1.7}, {at(5), -0.4}, {at(period), 0.9}}, interpolation, Extrapolation::repeat, Extrapolation::repeat);
+                for (int frame = 0; frame < period; ++frame)
+                    for (const int pass : {1, 2, 3, 10, 101}) EXPECT_EQ(evaluate(track, at(frame)), evaluate(track, at(frame + pass * period))) << fps << ' ' << period << ' ' << frame << ' ' << pass;
+            }
+        }
+}
+
 RC_GTEST_PROP(ExtrapolationProperty, RepeatIsPeriodic, ()) {
     const auto track = any_track(Extrapolation::repeat, Extrapolation::repeat);
     const double period = track.keys.back().time_s - track.keys.front().time_s, time = any_time();

@@ -60,6 +60,31 @@ TEST(SnapshotKey, DependsOnEverythingThatCanBeSeen) {
     }
 }
 
+/// A clip of a second in which a node swings and turns, looped.
+Stage looping(ClipLayer::Loop loop) {
+    Stage stage = furnished();
+    stage.animate(0).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {0.4, {1, 0.3, 0}}, {1, {0, 0, 0}}});
+    stage.animate(0).rotation = track<glm::dquat>({{0, turn(0)}, {0.5, turn(100)}, {1, turn(200)}});
+    stage.scene.clips[0].end_s = 1;
+    stage.shot.scenes[0].layers[0].loop = loop;
+    stage.shot.shutter = {0, 0.5};
+    return stage;
+}
+
+TEST(SnapshotKey, FramesOfALoopAreTheSameInEveryPass) {
+    for (const auto& [loop, seconds] : {std::pair(ClipLayer::Loop::repeat, 1), std::pair(ClipLayer::Loop::pingpong, 2)})
+        for (const int fps : {24, 25, 30}) {
+            Stage stage = looping(loop);
+            stage.shot.timing.fps = {fps, 1};
+            const BoundShot bound = stage.bind();
+            const auto key_at = [&](int frame) { return content_key(make_snapshots(bound, bound.sequence().frame(frame))); };
+            const int period = seconds * fps;
+            for (int frame = 0; frame < period; ++frame)
+                for (const int pass : {1, 2, 7, 60}) EXPECT_EQ(key_at(frame + pass * period), key_at(frame)) << fps << ' ' << frame << ' ' << pass;
+            EXPECT_NE(key_at(1), key_at(2));
+        }
+}
+
 TEST(SnapshotKey, ASampleSeedThatIsAnimatedChangesWithTheFrame) {
     Stage stage = furnished();
     stage.shot.render.seed_animated = true;
