@@ -38,7 +38,7 @@ struct Bindings {
     VisibilityRig visibility;
     MaterialRig materials;
     MorphRig morphs;
-    std::vector<Deformer> deformers;    ///< of seeds whose vertices bend
+    std::vector<Deformer> deformers;    ///< of seeds whose vertices bend; numbers of their meshes ascend
     std::shared_ptr<StillInstances> still_places = std::make_shared<StillInstances>();
     std::shared_ptr<DeformedCache> deformed = std::make_shared<DeformedCache>();
 
@@ -51,6 +51,9 @@ struct Bindings {
     /// World position of a node or of a scene's root.
     glm::dvec3 position_of(const NodeReference& reference, double time_s) const;
     const InstanceSeed& seed_of(std::uint32_t id) const { return *instances[id].seed; }
+    /// Number of the mesh that an instance with a deformer shows.
+    std::uint32_t bent_mesh_of(const Instance& instance) const;
+    BentMesh bent_mesh(std::uint32_t number) const;
     /// node_from_geometry of a seed: where its normalised vertices lie in the coordinates of its node.
     glm::dmat4 node_from_geometry(const Scene& scene, const InstanceSeed& seed) const;
     /// The same with the instance's own place below the node.

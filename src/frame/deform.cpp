@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <mutex>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "base/hash.h"
 #include "base/text.h"
@@ -21,44 +23,6 @@ namespace kadr {
 namespace {
 
 constexpr double kMargin = 0.9;   // the error is looked at in three places of a segment, not everywhere
-constexpr int kBoundTimes = 9;    // at which the bounds of a deformer are taken over the shot
-
-// ---------------------------------------------------------------------------------------------------- once a shot
-
-bool bends(const Scene& scene, const MorphRig& morphs, const InstanceSeed& seed) {
-    const Node& node = scene.nodes[static_cast<std::size_t>(seed.mesh_node)];
-    const GeometryData& geometry = scene.geometries[seed.geometry];
-    if (node.skin >= 0 && geometry.skin.per_vertex > 0) return true;
-    const bool weighs = std::any_of(node.weights.begin(), node.weights.end(), [](double weight) { return weight != 0; });
-    return !geometry.targets.empty() && (weighs || morphs.moves(seed.mesh_node));
-}
-
-std::vector<JointBox> boxes_of(const GeometryData& geometry, bool skinned) {
-    std::map<std::size_t, JointBox> boxes;
-    const auto add = [&](std::size_t joint, const kernels::Vec3f& p) {
-        const glm::dvec3 at(p.x, p.y, p.z);
-        const auto [place, fresh] = boxes.try_emplace(joint, JointBox{at, at, joint});
-        place->second.low = glm::min(place->second.low, at);
-        place->second.high = glm::max(place->second.high, at);
-    };
-    const auto slots = skinned ? static_cast<std::size_t>(geometry.skin.per_vertex) : std::size_t{1};
-    for (std::size_t v = 0; v < geometry.positions.size(); ++v)
-        for (std::size_t i = v * slots; i < (v + 1) * slots; ++i)
-            if (!skinned || geometry.skin.weights[i] > 0) add(skinned ? geometry.skin.joints[i] : 0, geometry.positions[v]);
-    std::vector<JointBox> result;
-    for (const auto& [joint, box] : boxes) result.push_back(box);
-    return result;
-}
-
-std::vector<double> target_sizes(const GeometryData& geometry) {
-    std::vector<double> sizes;
-    for (const MorphTarget& target : geometry.targets) {
-        double longest = 0;
-        for (const kernels::Vec3f& d : target.positions) longest = std::max(longest, glm::length(glm::dvec3(d.x, d.y, d.z)));
-        sizes.push_back(longest);
-    }
-    return sizes;
-}
 
 [[noreturn]] void refuse_infinite(const BoundShot& shot, const Bindings& bindings, const Deformer& deformer, double time_s) {
     const auto file = static_cast<std::size_t>(bindings.rig.file_of(deformer.mesh_node));
@@ -68,49 +32,12 @@ std::vector<double> target_sizes(const GeometryData& geometry) {
                                 "expected finite transforms and weights"));
 }
 
-DeformationPose finite_pose(const BoundShot& shot, const Bindings& bindings, const Deformer& deformer, double time_s, double clip_offset_s = 0) {
-    DeformationPose pose = deformer.pose(shot.scene(), bindings, time_s, clip_offset_s);
-    if (!pose.finite()) refuse_infinite(shot, bindings, deformer, time_s);
-    return pose;
-}
-
-/// Centre and scale that hold the mesh over the whole shot, as far as some times of it tell.
-void set_bounds(const BoundShot& shot, const Bindings& bindings, Deformer& deformer) {
-    const std::vector<int>& frames = shot.timing().frames;
-    const double begin = shot.sequence().frame(frames.front()).open_s, end = shot.sequence().frame(frames.back()).close_s;
-    std::vector<glm::dvec3> corners;
-    for (int i = 0; i < kBoundTimes; ++i)
-        add_corners(deformer, finite_pose(shot, bindings, deformer, std::lerp(begin, end, i / (kBoundTimes - 1.0))), corners);
-    glm::dvec3 low = corners.front(), high = low;
-    for (const glm::dvec3& corner : corners) low = glm::min(low, corner), high = glm::max(high, corner);
-    const glm::dvec3 half = 0.5 * (high - low);
-    deformer.centre = 0.5 * (low + high);
-    deformer.scale = std::max({half.x, half.y, half.z});
-    if (!(deformer.scale > 0)) deformer.scale = 1;  // everything in one point
-}
-
-Deformer make_deformer(const BoundShot& shot, const Bindings& bindings, const InstanceSeed& seed) {
-    const Node& node = shot.scene().nodes[static_cast<std::size_t>(seed.mesh_node)];
-    const GeometryData& geometry = shot.scene().geometries[seed.geometry];
-    const bool skinned = node.skin >= 0 && geometry.skin.per_vertex > 0;
-    Deformer deformer;
-    deformer.mesh_node = seed.mesh_node;
-    deformer.geometry = seed.geometry;
-    if (skinned) deformer.skeleton = Skeleton(shot.scene(), node.skin);
-    deformer.skinning = shot.shot().scenes[static_cast<std::size_t>(bindings.rig.file_of(seed.mesh_node))].skinning;
-    deformer.boxes = boxes_of(geometry, skinned);
-    deformer.target_sizes = target_sizes(geometry);
-    set_bounds(shot, bindings, deformer);
-    return deformer;
-}
-
-// --------------------------------------------------------------------------------------------------- once a frame
-
-std::vector<double> key_times(const Bindings& bindings, const Deformer& deformer, double open_s, double close_s) {
-    std::vector<double> times = bindings.morphs.key_times_of(deformer.mesh_node, open_s, close_s);
+std::vector<double> key_times(const Bindings& bindings, const BentMesh& mesh, double open_s, double close_s) {
+    const Deformer& deformer = *mesh.deformer;
+    std::vector<double> times = bindings.morphs.key_times_of(deformer.mesh_node, open_s, close_s, mesh.clip_offset_s);
     if (deformer.skeleton)
         for (const int node : deformer.skeleton->nodes()) {
-            const std::vector<double> more = bindings.rig.key_times_of(node, open_s, close_s);
+            const std::vector<double> more = bindings.rig.key_times_of(node, open_s, close_s, mesh.clip_offset_s);
             times.insert(times.end(), more.begin(), more.end());
         }
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
@@ -126,8 +53,9 @@ public:
     double open_s() const { return open_s_; }
     double close_s() const { return close_s_; }
     double time(double u) const { return open_s_ + u * (close_s_ - open_s_); }
-    /// The camera's view at 4 * segments + 1 times.
+    /// The camera's view at 4 * segments + 1 times. Many threads may ask.
     std::span<const PixelScale> scales(int segments) {
+        const std::lock_guard lock(mutex_);
         std::vector<PixelScale>& scales = scales_[segments];
         for (int i = static_cast<int>(scales.size()); i <= 4 * segments; ++i) {
             CameraState camera = camera_at(shot_, time(i / (4.0 * segments)));
@@ -141,7 +69,8 @@ private:
     const BoundShot& shot_;
     double open_s_, close_s_;
     glm::dvec3 origin_;
-    std::map<int, std::vector<PixelScale>> scales_;
+    std::mutex mutex_;
+    std::map<int, std::vector<PixelScale>> scales_;  ///< lists stay as they are once they are made
 };
 
 struct FittedPoses {
@@ -149,15 +78,17 @@ struct FittedPoses {
     double error_px = 0;
 };
 
-FittedPoses fit_poses(const BoundShot& shot, const Deformer& deformer, Part& part, DeformationView view) {
+FittedPoses fit_poses(const BoundShot& shot, const BentMesh& mesh, Part& part, DeformationView view) {
     const Bindings& bindings = shot.bindings();
+    const Deformer& deformer = *mesh.deformer;
+    const auto pose_at = [&](double time_s) { return finite_pose(shot, bindings, deformer, time_s, mesh.clip_offset_s); };
     const GeometryData& geometry = shot.scene().geometries[deformer.geometry];
-    if (!(part.close_s() > part.open_s())) return {{finite_pose(shot, bindings, deformer, part.open_s())}, 0};
-    const std::vector<double> times = key_times(bindings, deformer, part.open_s(), part.close_s());
+    if (!(part.close_s() > part.open_s())) return {{pose_at(part.open_s())}, 0};
+    const std::vector<double> times = key_times(bindings, mesh, part.open_s(), part.close_s());
     const int base = even_segments_for(times);
     for (int segments = refined_segments(base, base > 1 || times.empty() ? 1 : static_cast<int>(times.size()) + 1);; segments *= 2) {
         std::vector<DeformationPose> poses;
-        for (int i = 0; i <= 4 * segments; ++i) poses.push_back(finite_pose(shot, bindings, deformer, part.time(i / (4.0 * segments))));
+        for (int i = 0; i <= 4 * segments; ++i) poses.push_back(pose_at(part.time(i / (4.0 * segments))));
         if (std::all_of(poses.begin(), poses.end(), [&](const DeformationPose& pose) { return nearly_same(pose, poses[0]); })) return {{poses[0]}, 0};
         view.scales = part.scales(segments);
         const bool last = 2 * segments > kMostSegments;
@@ -183,11 +114,11 @@ std::uint64_t version_of(const std::vector<DeformationPose>& keys) {
     return hasher.finish().low;
 }
 
-std::shared_ptr<const DeformedMesh> make_mesh(const GeometryData& geometry, const Deformer& deformer, std::uint32_t index, const FittedPoses& fitted, std::uint64_t version) {
+std::shared_ptr<const DeformedMesh> make_mesh(const GeometryData& geometry, const Deformer& deformer, std::uint32_t number, const FittedPoses& fitted, std::uint64_t version) {
     auto mesh = std::make_shared<DeformedMesh>();
     const std::size_t count = geometry.positions.size();
     mesh->geometry = deformer.geometry;
-    mesh->deformer = index;
+    mesh->number = number;
     mesh->key_count = static_cast<std::uint32_t>(fitted.keys.size());
     mesh->version = version;
     mesh->error_px = fitted.error_px;
@@ -199,39 +130,57 @@ std::shared_ptr<const DeformedMesh> make_mesh(const GeometryData& geometry, cons
     return mesh;
 }
 
+/// A bent mesh and the instances of a snapshot that show it.
+struct Shown {
+    std::uint32_t number = 0;
+    std::vector<std::size_t> instances;
+};
+
+std::vector<Shown> shown_meshes(const Bindings& bindings, const SceneSnapshot& snapshot) {
+    std::map<std::uint32_t, std::vector<std::size_t>> by_number;
+    for (std::size_t i = snapshot.instances.shared_size(); i < snapshot.instances.size(); ++i) {
+        const Instance instance = bindings.instances[snapshot.instances[i].id];
+        if (instance.seed->deformer >= 0) by_number[bindings.bent_mesh_of(instance)].push_back(i);
+    }
+    std::vector<Shown> shown;
+    for (auto& [number, instances] : by_number) shown.push_back({number, std::move(instances)});
+    return shown;
+}
+
+std::shared_ptr<const DeformedMesh> bend(const BoundShot& shot, const Shown& shown, Part& part, const MotionFrames& motion) {
+    const Bindings& bindings = shot.bindings();
+    const BentMesh bent = bindings.bent_mesh(shown.number);
+    DeformationView view;
+    view.enough_px = kMargin * kDeformationShare * shot.shot().render.motion_tolerance_px;
+    for (const std::size_t i : shown.instances) view.world_from_deformed.push_back(interpolate(motion, i, 0));  // relative to the origin
+    const FittedPoses fitted = fit_poses(shot, bent, part, view);
+    const std::uint64_t version = version_of(fitted.keys);
+    if (auto known = bindings.deformed->find(shown.number, version)) return known;
+    auto mesh = make_mesh(shot.scene().geometries[bent.deformer->geometry], *bent.deformer, shown.number, fitted, version);
+    bindings.deformed->keep(mesh);
+    return mesh;
+}
+
 }  // namespace
 
-void bind_deformers(const BoundShot& shot, Bindings& bindings) {
-    for (InstanceSeed& seed : bindings.seeds) {
-        if (!bends(shot.scene(), bindings.morphs, seed)) continue;
-        seed.deformer = static_cast<int>(bindings.deformers.size());
-        bindings.deformers.push_back(make_deformer(shot, bindings, seed));
-        if (bindings.deformers.back().skeleton) seed.node = bindings.deformers.back().skeleton->root();
-    }
+DeformationPose finite_pose(const BoundShot& shot, const Bindings& bindings, const Deformer& deformer, double time_s, double clip_offset_s) {
+    DeformationPose pose = deformer.pose(shot.scene(), bindings, time_s, clip_offset_s);
+    if (!pose.finite()) refuse_infinite(shot, bindings, deformer, time_s);
+    return pose;
 }
 
 void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
     const Bindings& bindings = shot.bindings();
     if (bindings.deformers.empty()) return;
     Part part(shot, open_s, close_s, snapshot.render_origin);
-    std::map<int, std::vector<std::size_t>> shown;  // deformer -> instances
-    for (std::size_t i = snapshot.instances.shared_size(); i < snapshot.instances.size(); ++i)
-        if (const int deformer = bindings.seed_of(snapshot.instances[i].id).deformer; deformer >= 0) shown[deformer].push_back(i);
+    const std::vector<Shown> shown = shown_meshes(bindings, snapshot);
+    snapshot.deformed.resize(shown.size());
+    // Each mesh is skinned in parallel, but most of a crowd's are too small for that.
+    tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { snapshot.deformed[i] = bend(shot, shown[i], part, snapshot.motion); });
     double error_px = 0;
-    for (const auto& [index, instances] : shown) {
-        const Deformer& deformer = bindings.deformers[static_cast<std::size_t>(index)];
-        DeformationView view;
-        view.enough_px = kMargin * kDeformationShare * shot.shot().render.motion_tolerance_px;
-        for (const std::size_t i : instances) {
-            view.world_from_deformed.push_back(interpolate(snapshot.motion, i, 0));  // relative to the origin
-            snapshot.instances.edit(i).deformed = static_cast<int>(snapshot.deformed.size());
-        }
-        const FittedPoses fitted = fit_poses(shot, deformer, part, view);
-        const std::uint64_t version = version_of(fitted.keys);
-        std::shared_ptr<const DeformedMesh> mesh = bindings.deformed->find(static_cast<std::uint32_t>(index), version);
-        if (!mesh) bindings.deformed->keep(mesh = make_mesh(shot.scene().geometries[deformer.geometry], deformer, static_cast<std::uint32_t>(index), fitted, version));
-        error_px = std::max(error_px, fitted.error_px);
-        snapshot.deformed.push_back(std::move(mesh));
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        for (const std::size_t instance : shown[i].instances) snapshot.instances.edit(instance).deformed = static_cast<int>(i);
+        error_px = std::max(error_px, snapshot.deformed[i]->error_px);
     }
     snapshot.motion.max_error_px += error_px;
 }
@@ -239,10 +188,11 @@ void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSna
 std::vector<std::vector<kernels::Vec3f>> deformed_positions(const BoundShot& shot, const SceneSnapshot& snapshot, double time_s) {
     std::vector<std::vector<kernels::Vec3f>> result;
     for (const auto& mesh : snapshot.deformed) {
-        const Deformer& deformer = shot.bindings().deformers[mesh->deformer];
+        const auto [bent, clip_offset_s] = shot.bindings().bent_mesh(mesh->number);
+        const Deformer& deformer = *bent;
         const GeometryData& geometry = shot.scene().geometries[deformer.geometry];
         std::vector<kernels::Vertex> vertices(geometry.positions.size());
-        deform_vertices(geometry, VertexPose(finite_pose(shot, shot.bindings(), deformer, time_s), deformer.skinning), vertices, {});
+        deform_vertices(geometry, VertexPose(finite_pose(shot, shot.bindings(), deformer, time_s, clip_offset_s), deformer.skinning), vertices, {});
         std::vector<kernels::Vec3f>& positions = result.emplace_back();
         for (const kernels::Vertex& vertex : vertices) positions.push_back(vertex.position);
     }

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "frame/deformer.h"
 #include "frame/snapshot.h"
 
 namespace kadr {
 
-/// Finds the seeds whose vertices bend, and gives them deformers with bounds over the whole shot.
-/// @throws InputError  naming the node whose joints are not finite
-void bind_deformers(const BoundShot& shot, Bindings& bindings);
+/// @throws InputError  naming the node whose joints or weights are not finite
+DeformationPose finite_pose(const BoundShot& shot, const Bindings& bindings, const Deformer& deformer, double time_s, double clip_offset_s);
 
 /// Fills snapshot.deformed for the part [open_s, close_s] of the shutter and points the instances at it; raises
 /// snapshot.motion.max_error_px to what keys of places and of vertices make together. Follows add_motion_frames.

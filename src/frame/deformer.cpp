@@ -36,16 +36,16 @@ DeformationPose Deformer::pose(const Scene& scene, const Bindings& bindings, dou
     return pose;
 }
 
-std::shared_ptr<const DeformedMesh> DeformedCache::find(std::uint32_t deformer, std::uint64_t version) const {
+std::shared_ptr<const DeformedMesh> DeformedCache::find(std::uint32_t number, std::uint64_t version) const {
     const std::lock_guard lock(mutex_);
-    const auto found = last_.find(deformer);
+    const auto found = last_.find(number);
     return found != last_.end() && found->second->version == version ? found->second : nullptr;
 }
 
 void DeformedCache::keep(std::shared_ptr<const DeformedMesh> mesh) {
     const std::lock_guard lock(mutex_);
-    const std::uint32_t deformer = mesh->deformer;
-    last_[deformer] = std::move(mesh);
+    const std::uint32_t number = mesh->number;
+    last_[number] = std::move(mesh);
 }
 
 }  // namespace kadr

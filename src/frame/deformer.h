@@ -40,15 +40,24 @@ struct Deformer {
     double scale = 1;
     std::vector<JointBox> boxes;        ///< of joints that carry anything; without a skin the whole mesh
     std::vector<double> target_sizes;   ///< [morph target] longest difference of a position
+    std::vector<double> clip_offsets_s{0};  ///< of its copies, each once, ascending: as many bent meshes
+    std::uint32_t first_mesh = 0;           ///< number of the one with the first offset; those of all deformers are counted on
 
+    std::uint32_t end_mesh() const { return first_mesh + static_cast<std::uint32_t>(clip_offsets_s.size()); }
     /// The pose at a time of the shot.
     DeformationPose pose(const Scene& scene, const Bindings& bindings, double time_s, double clip_offset_s = 0) const;
 };
 
-/// The last vertices of every deformer: what does not change is not computed again.
+/// A deformer at one of its clip offsets: what copies with equal offsets share.
+struct BentMesh {
+    const Deformer* deformer = nullptr;
+    double clip_offset_s = 0;
+};
+
+/// The last vertices of every bent mesh: what does not change is not computed again.
 class DeformedCache {
 public:
-    std::shared_ptr<const DeformedMesh> find(std::uint32_t deformer, std::uint64_t version) const;
+    std::shared_ptr<const DeformedMesh> find(std::uint32_t number, std::uint64_t version) const;
     void keep(std::shared_ptr<const DeformedMesh> mesh);
 
 private:

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "frame/bindings.h"
-#include "frame/deform.h"
+#include "frame/bind_deformers.h"
 #include "frame/problem.h"
 #include "frame/scatter.h"
 
@@ -201,19 +201,6 @@ void divide_instances(Bindings& bindings) {
     bindings.changing = bindings.instances.of_seeds([&](const InstanceSeed& seed) { return !stands_still(bindings, seed); });
 }
 
-/// The bent vertices of a mesh are made once a frame, for all copies.
-void check_deforming_copies(const Shot& shot, const Scene& scene, const Bindings& bindings) {
-    for (const InstanceSeed& seed : bindings.seeds) {
-        const int file = bindings.rig.file_of(seed.mesh_node);
-        const std::span<const Placement> copies = bindings.instances.copies_of(file);
-        const bool offset = std::any_of(copies.begin(), copies.end(), [](const Placement& copy) { return copy.clip_offset_s != 0; });
-        if (seed.deformer < 0 || !offset) continue;
-        throw InputError(problem_at(shot.scenes.at(static_cast<std::size_t>(file)).instances->where,
-                                    fmt::format("copies play clips at other times, and the mesh of node '{}' bends with a skin or morph targets", node_path(scene, file, seed.mesh_node)),
-                                    "expected copies without offset: bending copies at other times are not supported yet; list the scene several times with other starts"));
-    }
-}
-
 /// Every light costs each shaded point some work, so copies of lights are for tens, not for thousands.
 constexpr std::size_t kMostLightCopies = 1024;
 
@@ -279,6 +266,19 @@ glm::dmat4 Bindings::copied_from_geometry(const Scene& scene, const Instance& in
     return instance.local ? matrix_of(*instance.local) * local : local;
 }
 
+std::uint32_t Bindings::bent_mesh_of(const Instance& instance) const {
+    const Deformer& deformer = deformers[static_cast<std::size_t>(instance.seed->deformer)];
+    const auto& offsets = deformer.clip_offsets_s;
+    const auto at = std::lower_bound(offsets.begin(), offsets.end(), instance.clip_offset_s());
+    return deformer.first_mesh + static_cast<std::uint32_t>(at - offsets.begin());
+}
+
+BentMesh Bindings::bent_mesh(std::uint32_t number) const {
+    const auto after = std::upper_bound(deformers.begin(), deformers.end(), number, [](std::uint32_t n, const Deformer& deformer) { return n < deformer.first_mesh; });
+    const Deformer& deformer = after[-1];
+    return {&deformer, deformer.clip_offsets_s[number - deformer.first_mesh]};
+}
+
 glm::dmat4 Bindings::node_from_geometry(const Scene& scene, const InstanceSeed& seed) const {
     const GeometryData& geometry = scene.geometries[seed.geometry];
     const bool bends = seed.deformer >= 0;
@@ -318,10 +318,10 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     bindings->visibility = VisibilityRig(shot, scene, scenes, bindings->properties);
     bindings->materials = MaterialRig(shot, scene, bindings->properties);
     bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
-    bind_deformers(*this, *bindings);
-    bindings->instances = InstanceList(bindings->seeds, scene, copies_of(shot, scene, bindings->rig));
+    std::vector<std::vector<Placement>> copies = copies_of(shot, scene, bindings->rig);
+    bind_deformers(*this, copies, *bindings);
+    bindings->instances = InstanceList(bindings->seeds, scene, std::move(copies));
     check_count(shot, bindings->instances);
-    check_deforming_copies(shot, scene, *bindings);
     divide_instances(*bindings);
     bindings->clip_offsets_s = offsets_of(bindings->instances, scene.files.size());
     if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);

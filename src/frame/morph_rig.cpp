@@ -76,6 +76,16 @@ std::vector<double> MorphRig::weights(int node, double time_s, double clip_offse
     return weights;
 }
 
+bool MorphRig::clips_jump() const {
+    const auto jumps = [this](const auto& part) {
+        return part.track->interpolation == Interpolation::step || jumps_at_seam(*part.track, layers_[static_cast<std::size_t>(part.layer)]);
+    };
+    for (const auto& [node, weights] : animated_)
+        for (const LayeredTrack<double>& weight : weights.by_clip)
+            if (std::any_of(weight.parts.begin(), weight.parts.end(), jumps)) return true;
+    return false;
+}
+
 std::vector<double> MorphRig::discontinuities(double begin_s, double end_s, double clip_offset_s) const {
     std::vector<double> times;
     if (animated_.empty()) return times;

@@ -19,6 +19,8 @@ public:
 
     bool moves(int node) const { return animated_.count(node) > 0; }
     std::vector<double> weights(int node, double time_s, double clip_offset_s = 0) const;  ///< [morph target]
+    /// Whether clips jump somewhere, so that copies which play them at other times jump at other times.
+    bool clips_jump() const;
     /// Times inside (begin, end) where a weight jumps.
     std::vector<double> discontinuities(double begin_s, double end_s, double clip_offset_s = 0) const;
     /// Keys inside (begin, end) of a node's weights.

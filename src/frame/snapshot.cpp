@@ -58,9 +58,19 @@ std::vector<double> node_discontinuities(const Bindings& bindings, double begin_
     return all;
 }
 
+std::vector<double> morph_discontinuities(const Bindings& bindings, double begin_s, double end_s) {
+    std::vector<double> all = bindings.morphs.discontinuities(begin_s, end_s);
+    if (!bindings.morphs.clips_jump()) return all;
+    for (const double offset : bindings.clip_offsets_s) {
+        const std::vector<double> times = bindings.morphs.discontinuities(begin_s, end_s, offset);
+        all.insert(all.end(), times.begin(), times.end());
+    }
+    return all;
+}
+
 std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
     std::vector<double> all;
-    for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), begin_s, end_s), shot.bindings().morphs.discontinuities(begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
+    for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), begin_s, end_s), morph_discontinuities(shot.bindings(), begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
                                              light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
                                              shot.bindings().visibility.discontinuities(begin_s, end_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
         all.insert(all.end(), times.begin(), times.end());

@@ -38,11 +38,11 @@ struct MotionFrames {
 /// of its geometry. Never changes once made, so snapshots and devices share it.
 struct DeformedMesh {
     std::uint32_t geometry = 0;              ///< index into Scene::geometries
-    std::uint32_t deformer = 0;              ///< stable over the shot: equal numbers are the same mesh
+    std::uint32_t number = 0;                ///< stable over the shot: equal numbers are the same mesh at the same clip offset
     std::uint32_t key_count = 1;             ///< one: it keeps its shape
     std::vector<kernels::Vertex> vertices;   ///< [key][vertex]
     std::vector<kernels::Vec4f> tangents;    ///< [key][vertex]; empty where the geometry has none
-    std::uint64_t version = 0;               ///< equal for equal vertices of one deformer
+    std::uint64_t version = 0;               ///< equal for equal vertices of one number
     double error_px = 0;                     ///< largest deviation of the linear way between keys from the true one
 };
 

@@ -39,7 +39,7 @@ void add_bent(SmallScene& s, const GeometryData& g, const kernels::Material& m, 
     s.add_instance(geometry, m, place);
     s.snapshot.instances.edit_back().deformed = static_cast<int>(s.snapshot.deformed.size());
     auto mesh = bent(g, geometry, keys, bend);
-    mesh->deformer = static_cast<unsigned>(s.snapshot.deformed.size());
+    mesh->number = static_cast<unsigned>(s.snapshot.deformed.size());
     s.snapshot.deformed.push_back(mesh);
 }
 

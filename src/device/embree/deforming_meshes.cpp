@@ -18,17 +18,17 @@ StructureUpdate choose_update(const StructureState& state) {
 }
 
 const DeformingMeshes::Entry& DeformingMeshes::find(const SnapshotInstance& instance) const {
-    return entries_.at({deformer_of_[static_cast<std::size_t>(instance.deformed)], instance.material});
+    return entries_.at({number_of_[static_cast<std::size_t>(instance.deformed)], instance.material});
 }
 
 void DeformingMeshes::set_frame(const SceneSnapshot& snapshot, const kernels::SceneView& view, bool cull_backfaces, std::vector<kernels::Geometry>& geometries) {
-    deformer_of_.clear();
+    number_of_.clear();
     bends_ = false;
     built_ = built_low_ = refitted_ = 0;
-    for (const auto& mesh : snapshot.deformed) deformer_of_.push_back(mesh->deformer);
+    for (const auto& mesh : snapshot.deformed) number_of_.push_back(mesh->number);
     std::map<Key, int> shown;  // deformed mesh
     for (const SnapshotInstance& instance : snapshot.instances)
-        if (instance.deformed >= 0 && instance.mask != 0) shown[{deformer_of_[static_cast<std::size_t>(instance.deformed)], instance.material}] = instance.deformed;
+        if (instance.deformed >= 0 && instance.mask != 0) shown[{number_of_[static_cast<std::size_t>(instance.deformed)], instance.material}] = instance.deformed;
     std::erase_if(entries_, [&](const auto& entry) { return !shown.count(entry.first); });
     for (const auto& [key, index] : shown) {
         Entry& entry = entries_[key];
@@ -42,12 +42,14 @@ void DeformingMeshes::set_frame(const SceneSnapshot& snapshot, const kernels::Sc
 }
 
 void DeformingMeshes::set_previous(const SceneSnapshot& snapshot, std::vector<kernels::Geometry>& geometries) {
-    for (std::size_t i = 0; i < snapshot.deformed.size(); ++i)
-        for (auto& [key, entry] : entries_) {
-            if (key.first != snapshot.deformed[i]->deformer) continue;
+    for (std::size_t i = 0; i < snapshot.deformed.size(); ++i) {
+        const unsigned number = snapshot.deformed[i]->number;
+        for (auto shown = entries_.lower_bound({number, 0}); shown != entries_.end() && shown->first.first == number; ++shown) {
+            Entry& entry = shown->second;
             entry.previous = snapshot.previous ? snapshot.previous->deformed[i] : std::vector<kernels::Vec3f>{};
             geometries[entry.user->geometry].previous = snapshot.previous ? entry.previous.data() : nullptr;
         }
+    }
 }
 
 void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bool cull_backfaces, RTCBuildQuality quality) {

@@ -73,7 +73,7 @@ private:
         bool low = false;                          ///< built at low quality
         std::vector<kernels::Vec3f> previous;
     };
-    using Key = std::pair<unsigned, unsigned>;     ///< deformer, material
+    using Key = std::pair<unsigned, unsigned>;     ///< number of the mesh, material
 
     const Entry& find(const SnapshotInstance& instance) const;
     void update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, const kernels::Material& material, bool cull_backfaces);
@@ -84,7 +84,7 @@ private:
     RTCDevice device_;
     const Scene& scene_;
     std::map<Key, Entry> entries_;
-    std::vector<unsigned> deformer_of_;  ///< [deformed mesh of the snapshot]
+    std::vector<unsigned> number_of_;  ///< [deformed mesh of the snapshot]
     bool bends_ = false;
     std::uint64_t built_ = 0, built_low_ = 0, refitted_ = 0;
 };
