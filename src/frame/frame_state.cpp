@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "frame/bindings.h"
 #include "frame/bind_deformers.h"
 #include "frame/problem.h"
@@ -244,6 +245,15 @@ std::vector<Diagnostic> warnings_of(const Shot& shot, const Bindings& bindings) 
                                           : "lit by the default sky; add `lights` or `environment`"));
     if (!lit && shot.environment.given && is_black(shot.environment) && !any_emission(bindings))
         warnings.push_back(warning_at(file, "nothing shines: no lights, a black environment and no emissive material", "every frame will be black"));
+    for (std::size_t f = 0; f < shot.scenes.size(); ++f) {
+        const auto& spec = shot.scenes[f].instances;
+        const std::size_t reached = bindings.instances.copies_of(static_cast<int>(f)).size();
+        if (spec && spec->scatter && reached < static_cast<std::size_t>(spec->scatter->count))
+            warnings.push_back(warning_at(spec->scatter->where,
+                                          fmt::format("scatter: {} of {} copies fit on '{}' at a distance of {} m", reached, spec->scatter->count, spec->scatter->target,
+                                                      format_number(spec->scatter->distance_m)),
+                                          "give a smaller distance, or a smaller count"));
+    }
     if (bindings.seeds.empty()) warnings.push_back(warning_at(file, "the scenes hold nothing to see", "no node of their default scenes has a mesh"));
     return warnings;
 }

@@ -56,7 +56,9 @@ void vary(const InstancesSpec& spec, std::uint32_t number, Placement& placement)
     const double yaw = spec.random_yaw_rad * (random_unit(spec.seed, number, kYaw) - 0.5);
     placement.rotation = placement.rotation * glm::quat(glm::angleAxis(yaw, glm::dvec3(0, 1, 0)));
     placement.scale *= static_cast<float>(within(spec.random_scale, kScale));
-    placement.clip_offset_s += static_cast<float>(within(spec.random_offset_s, kOffset));
+    double share = random_unit(spec.seed, number, kOffset);
+    if (spec.offset_steps > 0) share = std::floor(share * spec.offset_steps) / spec.offset_steps;
+    placement.clip_offset_s += static_cast<float>(std::lerp(spec.random_offset_s.x, spec.random_offset_s.y, share));
 }
 
 std::vector<Placement> place_copies(const InstancesSpec& spec) {

@@ -39,7 +39,8 @@ struct ScatterSpec {
     SourceLocation where;
     int count = 1;
     enum class Align { up, normal } align = Align::up;  ///< the copy's +y: the world's, or the surface's normal
-    bool operator==(const ScatterSpec& o) const { return target == o.target && count == o.count && align == o.align; }
+    double distance_m = 0;  ///< least distance of any two; where it leaves no room for `count`, there are fewer
+    bool operator==(const ScatterSpec& o) const { return target == o.target && count == o.count && align == o.align && distance_m == o.distance_m; }
 };
 
 /// How a scene is repeated: a list of places, or a grid or scatter with random variation.
@@ -52,10 +53,11 @@ struct InstancesSpec {
     double random_yaw_rad = 0;          ///< full range of a turn about the copy's +y
     glm::dvec2 random_scale{1};         ///< least and largest factor
     glm::dvec2 random_offset_s{0};      ///< least and largest clip offset
+    int offset_steps = 0;               ///< even steps that random offsets are rounded down to; 0: none
     bool operator==(const InstancesSpec& o) const {
         return list == o.list && grid == o.grid && scatter == o.scatter && seed == o.seed &&
                random_yaw_rad == o.random_yaw_rad && random_scale == o.random_scale &&
-               random_offset_s == o.random_offset_s;
+               random_offset_s == o.random_offset_s && offset_steps == o.offset_steps;
     }
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kPlaceKeys[] = {"translate", "rotate", "scale", "offset"};
 constexpr const char* kArrangementKeys[] = {"grid",  "spacing", "jitter",     "scatter",      "count",
-                                            "align", "seed",    "random_yaw", "random_scale", "random_offset"};
+                                            "distance", "align", "seed", "random_yaw", "random_scale", "random_offset", "offset_steps"};
 
 template <std::size_t N>
 void refuse_keys(const Section& section, const char* const (&keys)[N], std::string_view expected) {
@@ -87,6 +87,7 @@ void read_scatter(const Section& section, InstancesSpec& spec) {
     }
     if (!section.has("count")) field.error(fmt::format("{} has no count", section.name()), "expected count: the number of copies");
     assign(spec.scatter->count, read_integer(section["count"]));
+    assign(spec.scatter->distance_m, read_number(section["distance"]));
     assign(spec.scatter->align, read_choice<ScatterSpec::Align>(section["align"]));
 }
 
@@ -105,13 +106,16 @@ void read_arrangement(const Section& section, InstancesSpec& spec) {
         section.context().problems.error(section.node()->place, fmt::format("{} says neither grid nor scatter", section.name()),
                                          "expected one of them, or a list of places");
     for (const char* key : {"spacing", "jitter"}) section.exclusive("scatter", key);
-    for (const char* key : {"count", "align"}) section.exclusive("grid", key);
+    for (const char* key : {"count", "distance", "align"}) section.exclusive("grid", key);
     read_grid(section, spec);
     read_scatter(section, spec);
     assign(spec.seed, read_integer(section["seed"]));
     assign(spec.random_yaw_rad, read_number(section["random_yaw"]));
     read_range(section["random_scale"], spec.random_scale);
     read_range(section["random_offset"], spec.random_offset_s);
+    assign(spec.offset_steps, read_integer(section["offset_steps"]));
+    if (section.has("offset_steps") && !section.has("random_offset"))
+        section["offset_steps"].error(fmt::format("{} has offset_steps and no random_offset", section.name()), "expected random_offset: the range that the steps divide");
 }
 
 }  // namespace

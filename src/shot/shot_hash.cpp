@@ -60,9 +60,9 @@ private:
     void add(const TransformTrack& t) { (*this)(t.translate, t.rotate.orientation, t.rotate.axis_angle, t.scale); }
     void add(const PlacementSpec& p) { (*this)(p.translate_m, p.rotate, p.scale, p.offset_s); }
     void add(const GridSpec& g) { (*this)(g.counts[0], g.counts[1], g.counts[2], g.spacing_m, g.jitter); }
-    void add(const ScatterSpec& s) { (*this)(s.target, s.count, s.align); }
+    void add(const ScatterSpec& s) { (*this)(s.target, s.count, s.align, s.distance_m); }
     void add(const InstancesSpec& i) {
-        (*this)(i.list, i.grid, i.scatter, i.seed, i.random_yaw_rad, i.random_scale, i.random_offset_s);
+        (*this)(i.list, i.grid, i.scatter, i.seed, i.random_yaw_rad, i.random_scale, i.random_offset_s, i.offset_steps);
     }
     // The id, because node references name it. Not the path: the content counts, wherever it lies.
     void add(const SceneSpec& s) { (*this)(s.id, s.transform, s.layers, s.nodes, s.hide, s.visible, s.variant, s.materials, s.skinning, s.instances); }

@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
+
+#include <fmt/format.h>
 
 #include "frame/bindings.h"
 #include "frame/decompose.h"
@@ -12,6 +16,7 @@
 namespace kadr {
 namespace {
 
+using test::kPi;
 using test::message_of;
 using test::Stage;
 using test::track;
@@ -219,6 +224,83 @@ TEST(Scatter, CoversASurfaceEvenly) {
     double chi_squared = 0;
     for (const int cell : cells) chi_squared += (cell - 250.0) * (cell - 250.0) / 250;
     EXPECT_LT(chi_squared, 30.58);  // 99 % of a chi-squared distribution with 15 degrees of freedom; the seed is fixed
+}
+
+double least_distance(std::span<const Placement> copies) {
+    double least = INFINITY;
+    for (std::size_t i = 0; i < copies.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) least = std::min(least, glm::distance(copies[i].translation, copies[k].translation));
+    return least;
+}
+
+TEST(Scatter, KeepsTheDistance) {
+    Stage stage = strewn_stage(200);
+    const auto copies = [&](const BoundShot& bound) { return bound.bindings().instances.copies_of(0); };
+    EXPECT_LT(least_distance(copies(stage.bind())), 0.02);  // or the test proved nothing: the mean is 0.5 / sqrt(200 / 4 m2)
+    stage.shot.scenes[0].instances->scatter->distance_m = 0.08;
+    const BoundShot bound = stage.bind();
+    ASSERT_EQ(copies(bound).size(), 200u);
+    EXPECT_GE(least_distance(copies(bound)), 0.08);
+    EXPECT_TRUE(bound.warnings().empty() || bound.warnings()[0].text().find("scatter") == std::string::npos);
+    // The same again; others with another seed.
+    const BoundShot again = stage.bind();
+    for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(copies(again)[i].translation, copies(bound)[i].translation);
+    stage.shot.scenes[0].instances->seed = 1;
+    EXPECT_NE(copies(stage.bind())[0].translation, copies(bound)[0].translation);
+}
+
+TEST(Scatter, KeepsTheDistanceInTheWorld) {
+    Stage stage = strewn_stage(20);
+    stage.shot.scenes[0].instances->scatter->distance_m = 0.3;
+    stage.shot.scenes[0].transform.scale = Track<glm::dvec3>(glm::dvec3(2));  // undone by the placements
+    const BoundShot bound = stage.bind();
+    ASSERT_EQ(bound.bindings().instances.copies_of(0).size(), 20u);
+    EXPECT_GE(least_distance(bound.bindings().instances.copies_of(0)), 0.15);
+    EXPECT_LT(least_distance(bound.bindings().instances.copies_of(0)), 0.3);
+}
+
+TEST(Scatter, MakesAsManyAsFitAndSaysSo) {
+    Stage stage = strewn_stage(100'000);
+    stage.shot.scenes[0].instances->scatter->distance_m = 0.1;
+    const BoundShot bound = stage.bind();
+    const std::span<const Placement> copies = bound.bindings().instances.copies_of(0);
+    EXPECT_GE(least_distance(copies), 0.1);
+    // Random sequential addition of discs covers 0.547 of a plane (Feder 1980); discs may hang over the edge of 2 m.
+    const double coverage = static_cast<double>(copies.size()) * kPi * 0.05 * 0.05 / (2.1 * 2.1);
+    EXPECT_GT(coverage, 0.44);  // 80 % of it: a thousand misses in a row end the throwing
+    EXPECT_LT(coverage, 0.547);
+    std::string text;
+    for (const Diagnostic& warning : bound.warnings()) text += warning.text() + "\n";
+    EXPECT_NE(text.find(fmt::format("stage.yaml:6:20: warning: scatter: {} of 100000 copies fit on 'ground/Hill' at a distance of 0.1 m\n"
+                                    "  give a smaller distance, or a smaller count", copies.size())), std::string::npos) << text;
+}
+
+TEST(Scatter, ThatKeepsNoDistanceIsAsItWas) {
+    // Numbers of the copies go into their random variation: shots rendered before keep their pictures.
+    const Stage stage = strewn_stage(3);
+    const BoundShot bound = stage.bind();
+    const std::span<const Placement> copies = bound.bindings().instances.copies_of(0);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const double root = std::sqrt(random_unit(0, i, 17)), along = random_unit(0, i, 18);
+        const bool first = random_unit(0, i, 16) < 0.5;
+        const glm::dvec3 a(-1, 0, -1), b = first ? glm::dvec3(1, 0, 1) : glm::dvec3(-1, 0, 1), c = first ? glm::dvec3(1, 0, -1) : glm::dvec3(1, 0, 1);
+        EXPECT_NEAR(glm::distance(copies[i].translation, (1 - root) * a + root * (1 - along) * b + root * along * c), 0, 1e-12) << i;
+    }
+}
+
+TEST(RandomOffsets, InStepsAreShared) {
+    InstancesSpec spec = grid_of({1000, 1, 1}, glm::dvec3(1));
+    spec.random_offset_s = {1, 3};
+    spec.offset_steps = 4;
+    std::map<float, int> seen;
+    for (const Placement& copy : place_copies(spec)) ++seen[copy.clip_offset_s];
+    ASSERT_EQ(seen.size(), 4u);
+    float wanted = 1;
+    for (const auto& [offset, count] : seen) {
+        EXPECT_EQ(offset, wanted);
+        EXPECT_NEAR(count, 250, 60);  // 4 sigma of a binomial: sqrt(1000 / 4 * 3 / 4) = 13.7
+        wanted += 0.5f;
+    }
 }
 
 TEST(Scatter, StandsOnTheNormal) {

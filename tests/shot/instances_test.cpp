@@ -37,6 +37,13 @@ TEST_F(InstanceForms, GridsAndScatters) {
     EXPECT_EQ(scatter.scatter->count, 200);
     EXPECT_EQ(scatter.scatter->align, ScatterSpec::Align::normal);
     EXPECT_EQ(scatter.random_offset_s, glm::dvec2(0, 1));
+    EXPECT_EQ(scatter.scatter->distance_m, 0);
+    EXPECT_EQ(scatter.offset_steps, 0);
+    const InstancesSpec apart = instances("{ scatter: ground, count: 9, distance: 50 cm, random_offset: [0 s, 2 s], offset_steps: 4 }");
+    EXPECT_EQ(apart.scatter->distance_m, 0.5);
+    EXPECT_EQ(apart.offset_steps, 4);
+    EXPECT_NE(apart, instances("{ scatter: ground, count: 9, distance: 40 cm, random_offset: [0 s, 2 s], offset_steps: 4 }"));
+    EXPECT_NE(apart, instances("{ scatter: ground, count: 9, distance: 50 cm, random_offset: [0 s, 2 s], offset_steps: 5 }"));
     EXPECT_FALSE(parse_scene("a.glb").scenes[0].instances.has_value());
 }
 
@@ -44,7 +51,7 @@ TEST_F(InstanceForms, Messages) {
     EXPECT_EQ(error("[]"), R"(shot.yaml:4:16: error: scenes.0.instances is an empty list
         instances: []
                    ^~
-  expected a list of maps or a map of translate, rotate, scale, offset, grid, spacing, jitter, scatter, count, align, seed, random_yaw, random_scale, random_offset; for example instances: { grid: [10, 1, 10], spacing: [2 m, 2 m, 2 m] })");
+  expected a list of maps or a map of translate, rotate, scale, offset, grid, spacing, jitter, scatter, count, distance, align, seed, random_yaw, random_scale, random_offset, offset_steps; for example instances: { grid: [10, 1, 10], spacing: [2 m, 2 m, 2 m] })");
     EXPECT_EQ(error("{ spacing: [1, 1, 1] }"), R"(shot.yaml:4:16: error: scenes.0.instances says neither grid nor scatter
         instances: { spacing: [1, 1, 1] }
                    ^~~~~~~~~~~~~~~~~~~~~~
@@ -69,6 +76,14 @@ TEST_F(InstanceForms, Messages) {
         instances: { scatter: ground, count: 5, random_scale: [2, 1] }
                                                               ^~~~~~
   expected [least, largest])");
+    EXPECT_EQ(error("{ scatter: ground, count: 5, offset_steps: 4 }"), R"(shot.yaml:4:59: error: scenes.0.instances has offset_steps and no random_offset
+        instances: { scatter: ground, count: 5, offset_steps: 4 }
+                                                              ^
+  expected random_offset: the range that the steps divide)");
+    EXPECT_EQ(error("{ scatter: ground, count: 5, distance: -1 m }"), R"(shot.yaml:4:55: error: scenes.0.instances.distance is -1 m
+        instances: { scatter: ground, count: 5, distance: -1 m }
+                                                          ^~~~
+  expected at least 0 m)");
     EXPECT_EQ(error("[ { scale: 0 } ]"), R"(shot.yaml:4:27: error: scenes.0.instances.0.scale is zero
         instances: [ { scale: 0 } ]
                               ^
