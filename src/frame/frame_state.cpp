@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "frame/bindings.h"
 #include "frame/bind_deformers.h"
+#include "frame/copy_limits.h"
 #include "frame/problem.h"
 #include "frame/scatter.h"
 
@@ -186,12 +187,6 @@ std::vector<double> offsets_of(const InstanceList& instances, std::size_t files)
     return offsets;
 }
 
-void check_count(const Shot& shot, const InstanceList& instances) {
-    if (instances.size() <= static_cast<std::size_t>(kMostInstances)) return;
-    throw InputError(problem_at({shot.file.string(), 0, 0}, fmt::format("the shot has {} instances", instances.size()),
-                                fmt::format("expected at most {}: fewer copies, or fewer parts in what is copied", kMostInstances)));
-}
-
 /// Whether the instances of a seed look and stand the same throughout the shot.
 bool stands_still(const Bindings& bindings, const InstanceSeed& seed) {
     return !bindings.rig.moves(seed.node) && seed.deformer < 0 && !bindings.visibility.ever_hides(seed.mesh_node);
@@ -202,19 +197,11 @@ void divide_instances(Bindings& bindings) {
     bindings.changing = bindings.instances.of_seeds([&](const InstanceSeed& seed) { return !stands_still(bindings, seed); });
 }
 
-/// Every light costs each shaded point some work, so copies of lights are for tens, not for thousands.
-constexpr std::size_t kMostLightCopies = 1024;
-
-std::vector<LightSeed> lights_of(const Shot& shot, const Scene& scene, const NodeRig& rig, const InstanceList& instances) {
+std::vector<LightSeed> lights_of(const Scene& scene, const NodeRig& rig, const InstanceList& instances) {
     std::vector<LightSeed> lights;
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) {
         if (scene.nodes[node].light < 0 || !rig.reachable(static_cast<int>(node))) continue;
-        const int file = rig.file_of(static_cast<int>(node));
-        const std::span<const Placement> copies = instances.copies_of(file);
-        if (copies.size() > kMostLightCopies)
-            throw InputError(problem_at(shot.scenes.at(static_cast<std::size_t>(file)).instances->where,
-                                        fmt::format("{} copies repeat the light of node '{}'", copies.size(), node_path(scene, file, static_cast<int>(node))),
-                                        fmt::format("expected at most {} copies of a light; leave it out with hide, or all with use_scene_lights: false", kMostLightCopies)));
+        const std::span<const Placement> copies = instances.copies_of(rig.file_of(static_cast<int>(node)));
         if (copies.empty()) lights.push_back({static_cast<int>(node), nullptr});
         for (const Placement& copy : copies) lights.push_back({static_cast<int>(node), &copy});
     }
@@ -331,10 +318,10 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     std::vector<std::vector<Placement>> copies = copies_of(shot, scene, bindings->rig);
     bind_deformers(*this, copies, *bindings);
     bindings->instances = InstanceList(bindings->seeds, scene, std::move(copies));
-    check_count(shot, bindings->instances);
+    check_limits(shot, scene, *bindings);
     divide_instances(*bindings);
     bindings->clip_offsets_s = offsets_of(bindings->instances, scene.files.size());
-    if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
+    if (shot.use_scene_lights) bindings->lights = lights_of(scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);
     for (Diagnostic& warning : limit_warnings(scene, scenes, sequence_)) warnings_.push_back(std::move(warning));

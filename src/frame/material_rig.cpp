@@ -196,14 +196,37 @@ std::vector<kernels::Material> MaterialRig::table(double time_s) const {
     return all;
 }
 
-bool MaterialRig::may_emit(int material) const {
-    const std::size_t owned = index(material) - std::min(index(material), scene_->materials.size());
-    const bool own = index(material) >= scene_->materials.size();
-    const kernels::Material& original = scene_->materials[own ? index(own_[owned].original) : index(material)];
-    if (original.unlit || original.emission.x > 0 || original.emission.y > 0 || original.emission.z > 0) return true;
-    return own && std::any_of(own_[owned].driven.begin(), own_[owned].driven.end(), [](const DrivenProperty& driven) {
+const kernels::Material& MaterialRig::original_of(int material) const {
+    if (index(material) < scene_->materials.size()) return scene_->materials[index(material)];
+    return scene_->materials[index(own_[index(material) - scene_->materials.size()].original)];
+}
+
+bool MaterialRig::may_emit(int material) const { return original_of(material).unlit || may_light(material); }
+
+/// Whether the shot turns emission off for good: its word on a property is the last one.
+bool MaterialRig::put_out(const Own& own) {
+    for (const Property property : {Property::emissive, Property::emissive_strength}) {
+        const auto last = std::find_if(own.driven.rbegin(), own.driven.rend(), [property](const DrivenProperty& driven) { return driven.property == property; });
+        if (last == own.driven.rend() || last->layers) continue;
+        const auto is_zero = [](const auto& key) { return key.value == decltype(key.value){}; };
+        const auto all_zero = [&](const auto& mix) {
+            const auto& keys = mix.parts.front().track->keys;
+            return std::all_of(keys.begin(), keys.end(), is_zero);
+        };
+        if (std::visit(all_zero, last->track)) return true;
+    }
+    return false;
+}
+
+bool MaterialRig::may_light(int material) const {
+    const kernels::Material& original = original_of(material);
+    if (original.unlit) return false;
+    const bool shines = original.emission.x > 0 || original.emission.y > 0 || original.emission.z > 0;
+    if (index(material) < scene_->materials.size()) return shines;
+    const Own& own = own_[index(material) - scene_->materials.size()];
+    return !put_out(own) && (shines || std::any_of(own.driven.begin(), own.driven.end(), [](const DrivenProperty& driven) {
         return driven.property == Property::emissive || driven.property == Property::emissive_strength;
-    });
+    }));
 }
 
 bool MaterialRig::changes_fast(double begin_s, double end_s) const {

@@ -24,6 +24,8 @@ public:
     std::vector<kernels::Material> table(double time_s) const;
     /// Whether a material of the table ever sends out light.
     bool may_emit(int material) const;
+    /// Whether it ever shines on other things: what is unlit emits for the eye alone.
+    bool may_light(int material) const;
 
     /// Whether the middle of an interval cannot stand for all of it: a factor with whose square radiance may grow
     /// changes by more than 1/8 (the mean of its square is then off by more than 1/768), a texture moves by more than
@@ -38,6 +40,8 @@ private:
         bool blends = false;  ///< the shot gives its alpha
         std::vector<DrivenProperty> driven;  ///< in the order in which they apply
     };
+    const kernels::Material& original_of(int material) const;
+    static bool put_out(const Own& own);
     void add_entry(const Shot& shot, std::size_t entry, const PropertyRig& properties);
     kernels::Material evaluate(const Own& own, double time_s) const;
 

@@ -182,6 +182,49 @@ TEST(Instances, LightsAreRepeatedUpToALimit) {
               "  expected at most 1024 copies of a light; leave it out with hide, or all with use_scene_lights: false");
 }
 
+TEST(Instances, ThatShineAreLimited) {
+    Stage stage;
+    stage.add_node("Lamp");
+    stage.add_node("Stand");
+    stage.node(1).primitives[0] = {1, 1};
+    stage.scene.geometries[0].indices.resize(3 * 1000);
+    stage.scene.geometries.push_back(stage.scene.geometries[0]);
+    stage.scene.materials.resize(2);
+    stage.scene.materials[0].emission = {1, 1, 1};
+    stage.shot.scenes[0].instances = grid_of({160, 1, 100}, glm::dvec3(1));
+    stage.shot.scenes[0].instances->where = {"stage.yaml", 5, 14};
+    EXPECT_EQ(message_of([&] { stage.bind(); }), "no error");  // 16 million
+    stage.shot.scenes[0].instances->grid->counts = {160, 10, 100};
+    EXPECT_EQ(message_of([&] { stage.bind(); }),
+              "stage.yaml:5:14: error: 160000 copies of the mesh of node 'stage/Lamp' shine with 1000 triangles each: as lights, all shining copies take about 20.5 GB\n"
+              "  expected at most 16 million shining triangles in copies: fewer copies, a coarser mesh, or no emission (materials: emissive: [0, 0, 0])");
+    stage.scene.materials[0].unlit = true;  // seen, but no light
+    EXPECT_EQ(message_of([&] { stage.bind(); }), "no error");
+    stage.scene.materials[0].unlit = false;
+    stage.scene.material_names = {"Glow", "Wood"};
+    stage.scene.material_sources.resize(2);
+    stage.scene.files[0].material_count = 2;
+    MaterialSpec glow;
+    glow.name = "Glow";
+    glow.emissive = Track<glm::dvec3>(glm::dvec3(0));
+    stage.shot.scenes[0].materials = {glow};
+    EXPECT_EQ(message_of([&] { stage.bind(); }), "no error");
+    stage.shot.scenes[0].materials[0].emissive = track<glm::dvec3>({{0, {0, 0, 0}}, {1, {1, 0, 0}}});
+    EXPECT_NE(message_of([&] { stage.bind(); }), "no error");
+}
+
+TEST(Instances, ThatShineCountTheirOwnPlaces) {
+    Stage stage;
+    stage.add_node("Lamp");
+    stage.scene.geometries[0].indices.resize(3 * 1000);
+    stage.scene.materials[0].emission = {0, 0, 1};
+    stage.scene.placement_sets.push_back(std::vector<Placement>(16'001));
+    stage.node(0).placement_set = 0;
+    EXPECT_NE(message_of([&] { stage.bind(); }).find("stage.yaml:3:5: error: 16001 copies of the mesh of node 'stage/Lamp' shine"), std::string::npos);
+    stage.node(0).placement_set = -1;
+    EXPECT_EQ(message_of([&] { stage.bind(); }), "no error");
+}
+
 /// A second scene with a square of 2 m, in which the first is strewn.
 Stage strewn_stage(int count, ScatterSpec::Align align = ScatterSpec::Align::up) {
     Stage stage;
