@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "frame/clip_offsets.h"
 #include "frame/deformer.h"
 #include "frame/instance_list.h"
 #include "frame/material_rig.h"
@@ -21,6 +22,7 @@ namespace kadr {
 struct LightSeed {
     int node = -1;
     const Placement* copy = nullptr;  ///< null: the scene is not repeated
+    double clip_offset_s() const { return copy ? copy->clip_offset_s : 0; }
 };
 
 /// What binding a shot to its scenes finds out once, for every frame to use.
@@ -31,6 +33,7 @@ struct Bindings {
     InstanceList instances;             ///< every copy of every seed
     std::vector<IdRange> still;         ///< instances that look and stand the same throughout the shot
     std::vector<IdRange> changing;      ///< the others
+    ClipOffsets entry_offsets_s;
     std::vector<double> clip_offsets_s; ///< of all copies, each once, ascending; 0 among them
     std::vector<LightSeed> lights;      ///< lights of the scenes that shine
     int camera_node = -1;               ///< of an authored camera
@@ -46,6 +49,9 @@ struct Bindings {
     glm::dmat4 node_transform(int node, const Placement* copy, double time_s) const;
     /// The first copy of a file, which references of the shot mean; null: it is not repeated.
     const Placement* first_copy(int file) const { return instances.copies_of(file).empty() ? nullptr : &instances.copies_of(file).front(); }
+    double first_offset_s(int file) const { return first_copy(file) ? first_copy(file)->clip_offset_s : 0; }
+    /// Keys inside (begin, end) of a node in the first copy and of all above it.
+    std::vector<double> key_times_of(int node, double begin_s, double end_s) const { return rig.key_times_of(node, begin_s, end_s, first_offset_s(rig.file_of(node))); }
     /// world_from_node of the first copy.
     glm::dmat4 node_transform(int node, double time_s) const { return node_transform(node, first_copy(rig.file_of(node)), time_s); }
     /// World position of a node or of a scene's root.

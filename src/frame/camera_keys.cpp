@@ -119,16 +119,22 @@ const std::vector<DrivenProperty>& driven_of(const BoundShot& shot) {
     return bindings.properties.of(bindings.rig.file_of(bindings.camera_node), PropertyOwner::camera, camera);
 }
 
+/// References mean the first copy of a scene, with its clip offset.
+double driven_offset_s(const BoundShot& shot) {
+    const Bindings& bindings = shot.bindings();
+    return bindings.camera_node < 0 ? 0 : bindings.first_offset_s(bindings.rig.file_of(bindings.camera_node));
+}
+
 /// An authored camera with what its clips drive. @pre camera_node >= 0
 SceneCamera source_at(const BoundShot& shot, double time_s) {
     SceneCamera camera = shot.scene().cameras[static_cast<std::size_t>(shot.scene().nodes[static_cast<std::size_t>(shot.bindings().camera_node)].camera)];
     for (const DrivenProperty& driven : driven_of(shot)) {
-        const auto value = [&](double own) { return driven.value(own, time_s, 0); };
+        const auto value = [&](double own) { return driven.value(own, time_s, driven_offset_s(shot)); };
         if (driven.property == Property::camera_yfov) camera.yfov_rad = value(camera.yfov_rad);
         else if (driven.property == Property::camera_xmag) camera.xmag = value(camera.xmag);
         else if (driven.property == Property::camera_ymag) camera.ymag = value(camera.ymag);
         else if (driven.property == Property::camera_znear) camera.znear = value(camera.znear);
-        else if (driven.property == Property::camera_zfar) camera.zfar = driven.distance(camera.zfar, time_s, 0);
+        else if (driven.property == Property::camera_zfar) camera.zfar = driven.distance(camera.zfar, time_s, driven_offset_s(shot));
     }
     return camera;
 }
@@ -275,11 +281,11 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
     const Bindings& bindings = shot.bindings();
     const auto add_node = [&](const NodeReference& reference) {
         const int node = shot.node_of(reference);
-        if (node >= 0) return add(bindings.rig.key_times_of(node, open_s, close_s));
+        if (node >= 0) return add(bindings.key_times_of(node, open_s, close_s));
         add(key_times(shot.shot().scenes[static_cast<std::size_t>(shot.scene_of(reference))].transform, open_s, close_s));
     };
-    if (bindings.camera_node >= 0) add(bindings.rig.key_times_of(bindings.camera_node, open_s, close_s));
-    for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s, 0));
+    if (bindings.camera_node >= 0) add(bindings.key_times_of(bindings.camera_node, open_s, close_s));
+    for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s, driven_offset_s(shot)));
     if (spec.around) add_node(*spec.around);
     if (const auto* node = std::get_if<NodeReference>(&spec.look_at); node && !spec.gltf) add_node(*node);
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
@@ -343,7 +349,7 @@ std::vector<double> camera_discontinuities(const BoundShot& shot, double begin_s
         times.insert(times.end(), jumps.begin(), jumps.end());
     });
     for (const DrivenProperty& driven : driven_of(shot)) {
-        const std::vector<double> jumps = driven.discontinuities(begin_s, end_s, 0);
+        const std::vector<double> jumps = driven.discontinuities(begin_s, end_s, driven_offset_s(shot));
         times.insert(times.end(), jumps.begin(), jumps.end());
     }
     return times;

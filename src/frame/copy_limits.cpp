@@ -42,7 +42,7 @@ void check_shining(const Shot& shot, const Scene& scene, const Bindings& binding
     const InstanceSeed* worst = nullptr;
     for (const InstanceSeed& seed : bindings.seeds) {
         const std::size_t repeats = repeats_of(scene, bindings, seed);
-        if (repeats < 2 || !bindings.materials.may_light(static_cast<int>(seed.material))) continue;
+        if (repeats < 2 || !bindings.materials.may_light(seed.material)) continue;
         const std::size_t triangles = repeats * (scene.geometries[seed.geometry].indices.size() / 3);
         total += triangles;
         if (triangles > most) most = triangles, worst = &seed;

@@ -178,10 +178,9 @@ std::vector<std::vector<Placement>> copies_of(const Shot& shot, const Scene& sce
     return copies;
 }
 
-std::vector<double> offsets_of(const InstanceList& instances, std::size_t files) {
+std::vector<double> all_of(const ClipOffsets& entry_offsets_s) {
     std::vector<double> offsets{0};
-    for (std::size_t f = 0; f < files; ++f)
-        for (const Placement& copy : instances.copies_of(static_cast<int>(f))) offsets.push_back(copy.clip_offset_s);
+    for (const std::vector<double>& of_entry : entry_offsets_s) offsets.insert(offsets.end(), of_entry.begin(), of_entry.end());
     std::sort(offsets.begin(), offsets.end());
     offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
     return offsets;
@@ -210,7 +209,7 @@ std::vector<LightSeed> lights_of(const Scene& scene, const NodeRig& rig, const I
 
 bool any_emission(const Bindings& bindings) {
     return std::any_of(bindings.seeds.begin(), bindings.seeds.end(),
-                       [&](const InstanceSeed& seed) { return bindings.materials.may_emit(static_cast<int>(seed.material)); });
+                       [&](const InstanceSeed& seed) { return bindings.materials.may_emit(seed.material); });
 }
 
 bool is_black(const EnvironmentSpec& environment) {
@@ -311,17 +310,18 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     if (!problems.empty()) throw InputError(std::move(problems));
 
     auto bindings = std::make_shared<Bindings>(
-        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
+        Bindings{NodeRig(shot, scene, scenes), std::move(references), {}, {}, {}, {}, {}, {}, {}, camera_node, PropertyRig(scene, scenes), {}, {}, MorphRig(scene, scenes), {}});
     bindings->visibility = VisibilityRig(shot, scene, scenes, bindings->properties);
-    bindings->materials = MaterialRig(shot, scene, bindings->properties);
-    bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
     std::vector<std::vector<Placement>> copies = copies_of(shot, scene, bindings->rig);
+    bindings->entry_offsets_s = clip_offsets_of(copies);
+    bindings->clip_offsets_s = all_of(bindings->entry_offsets_s);
+    bindings->materials = MaterialRig(shot, scene, bindings->properties, bindings->entry_offsets_s);
+    bindings->seeds = seeds_of(scene, bindings->rig, bindings->materials);
     bind_deformers(*this, copies, *bindings);
     bindings->instances = InstanceList(bindings->seeds, scene, std::move(copies));
     check_limits(shot, scene, *bindings);
     divide_instances(*bindings);
-    bindings->clip_offsets_s = offsets_of(bindings->instances, scene.files.size());
-    if (shot.use_scene_lights) bindings->lights = lights_of(scene, bindings->rig, bindings->instances);
+    if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);
     for (Diagnostic& warning : limit_warnings(scene, scenes, sequence_)) warnings_.push_back(std::move(warning));

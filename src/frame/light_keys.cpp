@@ -80,13 +80,13 @@ const std::vector<DrivenProperty>& driven_of(const BoundShot& shot, int node) {
 }
 
 /// A light of a file with what its clips drive.
-SceneLight source_at(const BoundShot& shot, int node, double time_s) {
-    SceneLight light = shot.scene().lights[static_cast<std::size_t>(light_of(shot, node))];
-    for (const DrivenProperty& driven : driven_of(shot, node)) {
-        const auto value = [&](const auto& own) { return driven.value(own, time_s, 0); };
+SceneLight source_at(const BoundShot& shot, const LightSeed& seed, double time_s) {
+    SceneLight light = shot.scene().lights[static_cast<std::size_t>(light_of(shot, seed.node))];
+    for (const DrivenProperty& driven : driven_of(shot, seed.node)) {
+        const auto value = [&](const auto& own) { return driven.value(own, time_s, seed.clip_offset_s()); };
         if (driven.property == Property::light_color) light.color = value(light.color);
         else if (driven.property == Property::light_intensity) light.intensity = value(light.intensity);
-        else if (driven.property == Property::light_range) light.range_m = driven.distance(light.range_m, time_s, 0);
+        else if (driven.property == Property::light_range) light.range_m = driven.distance(light.range_m, time_s, seed.clip_offset_s());
         else if (driven.property == Property::light_inner) light.inner_rad = value(light.inner_rad);
         else if (driven.property == Property::light_outer) light.outer_rad = value(light.outer_rad);
     }
@@ -95,7 +95,7 @@ SceneLight source_at(const BoundShot& shot, int node, double time_s) {
 
 /// KHR_lights_punctual: along the node's -z; scale has no meaning for a light.
 kernels::Light light_at(const BoundShot& shot, const LightSeed& seed, double time_s, const glm::dvec3& origin) {
-    const SceneLight source = source_at(shot, seed.node, time_s);
+    const SceneLight source = source_at(shot, seed, time_s);
     const glm::dmat4 world = shot.bindings().node_transform(seed.node, seed.copy, time_s);
     const double length = glm::length(glm::dvec3(world[2]));
     if (!is_finite(world))
@@ -175,7 +175,7 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSpec& spec, d
     visit_tracks(spec, [&](const auto& track) { append(times, key_times(track, open_s, close_s)); });
     if (!spec.look_at) return times;
     if (const auto* target = std::get_if<NodeReference>(&*spec.look_at))
-        if (const int node = shot.node_of(*target); node >= 0) append(times, shot.bindings().rig.key_times_of(node, open_s, close_s));
+        if (const int node = shot.node_of(*target); node >= 0) append(times, shot.bindings().key_times_of(node, open_s, close_s));
     return times;
 }
 
@@ -225,8 +225,8 @@ std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, 
 }
 
 std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, double open_s, double close_s) {
-    std::vector<double> times = shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.copy ? seed.copy->clip_offset_s : 0);
-    for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.key_times(open_s, close_s, 0));
+    std::vector<double> times = shot.bindings().rig.key_times_of(seed.node, open_s, close_s, seed.clip_offset_s());
+    for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.key_times(open_s, close_s, seed.clip_offset_s()));
     return times;
 }
 
@@ -243,7 +243,7 @@ std::vector<double> add_light_keys(const BoundShot& shot, double open_s, double 
                                     [&](double time) { return light_at(shot, spec, time, origin); }, snapshot));
     const VisibilityRig::States states = shot.bindings().visibility.at(middle_s);
     for (const LightSeed& seed : shot.bindings().lights)
-        if (states.visible(seed.node))
+        if (states.visible(seed.node, seed.clip_offset_s()))
             append(missed, add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
                                     [&](double time) { return light_at(shot, seed, time, origin); }, snapshot));
     return missed;
@@ -254,7 +254,7 @@ std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s,
     for (const LightSpec& spec : shot.shot().lights)
         visit_tracks(spec, [&](const auto& track) { append(times, discontinuities(track, begin_s, end_s)); });
     for (const LightSeed& seed : shot.bindings().lights)
-        for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.discontinuities(begin_s, end_s, 0));
+        for (const DrivenProperty& driven : driven_of(shot, seed.node)) append(times, driven.discontinuities(begin_s, end_s, seed.clip_offset_s()));
     return times;
 }
 

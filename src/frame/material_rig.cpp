@@ -35,15 +35,15 @@ std::vector<std::string> material_names(const Scene& scene, const SceneFile& fil
 struct Factors {
     kernels::Material material;
     MaterialSource source;
-    void set(const DrivenProperty& driven, double time_s);
+    void set(const DrivenProperty& driven, double time_s, double clip_offset_s);
     kernels::Material made() const;
 };
 
 float to_float(double value) { return static_cast<float>(value); }
 
-void Factors::set(const DrivenProperty& driven, double time_s) {
+void Factors::set(const DrivenProperty& driven, double time_s, double clip_offset_s) {
     TextureTransform& transform = source.transforms[static_cast<std::size_t>(driven.use)];
-    const auto value = [&]<class T>(const T& own) { return driven.value(own, time_s, 0); };
+    const auto value = [&]<class T>(const T& own) { return driven.value(own, time_s, clip_offset_s); };
     const auto replace = [&](float& factor) { factor = to_float(value(static_cast<double>(factor))); };
     switch (driven.property) {
         case Property::base_color: {
@@ -132,6 +132,14 @@ bool textures_move(const Materials& at) {
     return false;
 }
 
+/// A mesh has a structure of its own for every material that it is seen with.
+constexpr std::size_t kMostMaterialCopies = 1024;
+
+[[noreturn]] void refuse_copies(const SceneSpec& spec, const std::string& material, std::size_t count) {
+    throw InputError(problem_at(spec.instances->where, fmt::format("copies play clips at {} different times, and the clips change material '{}' of scene '{}'", count, material, spec.id),
+                                fmt::format("expected at most {}: every time needs a material of its own; take fewer copies, or offsets that repeat", kMostMaterialCopies)));
+}
+
 }  // namespace
 
 void check_appearance(const Scene& scene, std::size_t entry, const SceneSpec& spec) {
@@ -148,27 +156,29 @@ void check_appearance(const Scene& scene, std::size_t entry, const SceneSpec& sp
     if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-MaterialRig::MaterialRig(const Shot& shot, const Scene& scene, const PropertyRig& properties) : scene_(&scene) {
-    for (std::size_t entry = 0; entry < scene.files.size(); ++entry) add_entry(shot, entry, properties);
+MaterialRig::MaterialRig(const Shot& shot, const Scene& scene, const PropertyRig& properties, const ClipOffsets& offsets) : scene_(&scene) {
+    for (std::size_t entry = 0; entry < scene.files.size(); ++entry) add_entry(shot, entry, properties, offsets[entry]);
 }
 
-void MaterialRig::add_entry(const Shot& shot, std::size_t entry, const PropertyRig& properties) {
+void MaterialRig::add_entry(const Shot& shot, std::size_t entry, const PropertyRig& properties, const std::vector<double>& offsets_s) {
     const SceneFile& file = scene_->files[entry];
     const SceneSpec& spec = shot.scenes.at(entry);
     const auto variant = spec.variant ? std::find(file.variants.begin(), file.variants.end(), *spec.variant) : file.variants.end();
     variant_.push_back(variant == file.variants.end() ? -1 : static_cast<int>(variant - file.variants.begin()));
     for (int material = file.first_material; material < file.first_material + file.material_count; ++material) {
-        Own own;
-        own.original = material;
+        Own own{material};
         const int in_file = scene_->material_sources[index(material)].index;
         if (in_file >= 0) own.driven = properties.of(static_cast<int>(entry), PropertyOwner::material, in_file);
+        if (std::any_of(own.driven.begin(), own.driven.end(), [](const DrivenProperty& driven) { return driven.follows_clips(); })) own.offsets_s = offsets_s;
+        if (own.offsets_s.size() > kMostMaterialCopies) refuse_copies(spec, scene_->material_names[index(material)], own.offsets_s.size());
         for (const MaterialSpec& change : spec.materials) {
             if (change.name != scene_->material_names[index(material)]) continue;
             own.blends = change.alpha.has_value();
             drive_all(own.driven, change);
         }
         if (own.driven.empty()) continue;
-        copy_of_[{static_cast<int>(entry), material}] = static_cast<int>(scene_->materials.size() + own_.size());
+        own.first = own_.empty() ? scene_->materials.size() : own_.back().first + own_.back().offsets_s.size();
+        copy_of_[{static_cast<int>(entry), material}] = static_cast<int>(own.first);
         own_.push_back(std::move(own));
     }
 }
@@ -181,9 +191,21 @@ int MaterialRig::material_of(int entry, const MeshPrimitive& primitive) const {
     return copy == copy_of_.end() ? material : copy->second;
 }
 
-kernels::Material MaterialRig::evaluate(const Own& own, double time_s) const {
+const MaterialRig::Own* MaterialRig::own_at(std::uint32_t material) const {
+    const auto after = std::upper_bound(own_.begin(), own_.end(), material, [](std::uint32_t m, const Own& own) { return m < own.first; });
+    return after == own_.begin() ? nullptr : &after[-1];
+}
+
+std::uint32_t MaterialRig::material_in_copy(std::uint32_t material, double clip_offset_s) const {
+    const Own* own = own_at(material);
+    if (!own || own->offsets_s.size() == 1) return material;
+    const auto at = std::lower_bound(own->offsets_s.begin(), own->offsets_s.end(), clip_offset_s);
+    return static_cast<std::uint32_t>(own->first + static_cast<std::size_t>(at - own->offsets_s.begin()));
+}
+
+kernels::Material MaterialRig::evaluate(const Own& own, double time_s, double clip_offset_s) const {
     Factors factors{scene_->materials[index(own.original)], scene_->material_sources[index(own.original)]};
-    for (const DrivenProperty& driven : own.driven) factors.set(driven, time_s);
+    for (const DrivenProperty& driven : own.driven) factors.set(driven, time_s, clip_offset_s);
     if (own.blends && factors.material.alpha_mode == kernels::AlphaMode::opaque) factors.material.alpha_mode = kernels::AlphaMode::blend;
     return factors.made();
 }
@@ -192,16 +214,17 @@ std::vector<kernels::Material> MaterialRig::table(double time_s) const {
     std::vector<kernels::Material> all;
     if (own_.empty()) return all;
     all = scene_->materials;
-    for (const Own& own : own_) all.push_back(evaluate(own, time_s));
+    for (const Own& own : own_)
+        for (const double offset : own.offsets_s) all.push_back(evaluate(own, time_s, offset));
     return all;
 }
 
-const kernels::Material& MaterialRig::original_of(int material) const {
-    if (index(material) < scene_->materials.size()) return scene_->materials[index(material)];
-    return scene_->materials[index(own_[index(material) - scene_->materials.size()].original)];
+const kernels::Material& MaterialRig::original_of(std::uint32_t material) const {
+    const Own* own = own_at(material);
+    return scene_->materials[own ? index(own->original) : material];
 }
 
-bool MaterialRig::may_emit(int material) const { return original_of(material).unlit || may_light(material); }
+bool MaterialRig::may_emit(std::uint32_t material) const { return original_of(material).unlit || may_light(material); }
 
 /// Whether the shot turns emission off for good: its word on a property is the last one.
 bool MaterialRig::put_out(const Own& own) {
@@ -218,32 +241,36 @@ bool MaterialRig::put_out(const Own& own) {
     return false;
 }
 
-bool MaterialRig::may_light(int material) const {
+bool MaterialRig::may_light(std::uint32_t material) const {
     const kernels::Material& original = original_of(material);
     if (original.unlit) return false;
     const bool shines = original.emission.x > 0 || original.emission.y > 0 || original.emission.z > 0;
-    if (index(material) < scene_->materials.size()) return shines;
-    const Own& own = own_[index(material) - scene_->materials.size()];
-    return !put_out(own) && (shines || std::any_of(own.driven.begin(), own.driven.end(), [](const DrivenProperty& driven) {
+    const Own* own = own_at(material);
+    if (!own) return shines;
+    return !put_out(*own) && (shines || std::any_of(own->driven.begin(), own->driven.end(), [](const DrivenProperty& driven) {
         return driven.property == Property::emissive || driven.property == Property::emissive_strength;
     }));
 }
 
 bool MaterialRig::changes_fast(double begin_s, double end_s) const {
-    return std::any_of(own_.begin(), own_.end(), [&](const Own& own) {
+    const auto fast = [&](const Own& own, double clip_offset_s) {
         std::array<kernels::Material, kChangeSteps> at;
-        for (int i = 0; i < kChangeSteps; ++i) at[index(i)] = evaluate(own, begin_s + (end_s - begin_s) * i / (kChangeSteps - 1));
+        for (int i = 0; i < kChangeSteps; ++i) at[index(i)] = evaluate(own, begin_s + (end_s - begin_s) * i / (kChangeSteps - 1), clip_offset_s);
         return factors_spread(at) || emission_bends(at) || textures_move(at);
+    };
+    return std::any_of(own_.begin(), own_.end(), [&](const Own& own) {
+        return std::any_of(own.offsets_s.begin(), own.offsets_s.end(), [&](double offset) { return fast(own, offset); });
     });
 }
 
 std::vector<double> MaterialRig::discontinuities(double begin_s, double end_s) const {
     std::vector<double> times;
     for (const Own& own : own_)
-        for (const DrivenProperty& driven : own.driven) {
-            const std::vector<double> more = driven.discontinuities(begin_s, end_s, 0);
-            times.insert(times.end(), more.begin(), more.end());
-        }
+        for (const DrivenProperty& driven : own.driven)
+            for (const double offset : own.offsets_s) {
+                const std::vector<double> more = driven.discontinuities(begin_s, end_s, offset);
+                times.insert(times.end(), more.begin(), more.end());
+            }
     return times;
 }
 

@@ -120,7 +120,7 @@ private:
     void add_instance(const Instance& source) {
         const Bindings& bindings = shot_.bindings();
         const int node = source.seed->node;
-        SnapshotInstance instance{source.seed->geometry, source.seed->material, source.id};
+        SnapshotInstance instance{source.seed->geometry, bindings.materials.material_in_copy(source.seed->material, source.clip_offset_s()), source.id};
         const std::size_t copies = bindings.instances.copies_of(bindings.rig.file_of(node)).size();
         if (!bindings.rig.moves(node) && copies <= kMostFlattenedCopies) {
             instance.fixed_place = static_cast<std::int32_t>(places_before_ + placed_.fixed_places.size());

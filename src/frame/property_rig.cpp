@@ -17,6 +17,11 @@ double DrivenProperty::distance(double own, double time_s, double clip_offset_s)
     return share > 1e-9 ? std::max(mean, 0.0) / (share * share) : 0;
 }
 
+bool DrivenProperty::follows_clips() const {
+    const auto runs = [&](const auto& part) { return (*layers)[static_cast<std::size_t>(part.layer)].runs() && varies(*part.track); };
+    return layers && std::visit([&](const auto& mix) { return std::any_of(mix.parts.begin(), mix.parts.end(), runs); }, track);
+}
+
 std::vector<double> DrivenProperty::discontinuities(double begin_s, double end_s, double clip_offset_s) const {
     return std::visit(
         [&](const auto& mix) {

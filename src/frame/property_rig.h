@@ -33,6 +33,8 @@ struct DrivenProperty {
     /// As value, of a distance for which 0 means infinite: where the property's own is, the mean of the layers is divided by
     /// the weight that they have together, so that it grows beyond all bounds while they fade out. Never negative.
     double distance(double own, double time_s, double clip_offset_s) const;
+    /// Whether the time of its clips makes a difference, and with it a clip offset.
+    bool follows_clips() const;
     /// Times of the shot inside (begin, end) where the value jumps.
     std::vector<double> discontinuities(double begin_s, double end_s, double clip_offset_s) const;
     /// Times of the shot inside (begin, end) where the tracks or their weights have keys.

@@ -72,7 +72,7 @@ std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double e
     std::vector<double> all;
     for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), begin_s, end_s), morph_discontinuities(shot.bindings(), begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
                                              light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
-                                             shot.bindings().visibility.discontinuities(begin_s, end_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
+                                             shot.bindings().visibility.discontinuities(begin_s, end_s, shot.bindings().entry_offsets_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
         all.insert(all.end(), times.begin(), times.end());
     std::sort(all.begin(), all.end());
     // Jumps of different tracks that fall together differ by the rounding of their clips' times.
@@ -104,7 +104,7 @@ void hide_instances(const BoundShot& shot, double time_s, SharedList<SnapshotIns
     if (bindings.visibility.idle()) return;
     const VisibilityRig::States states = bindings.visibility.at(time_s);
     for (std::size_t i = instances.shared_size(); i < instances.size(); ++i)
-        if (!states.visible(bindings.seed_of(instances[i].id).mesh_node)) instances.edit(i).mask = 0;
+        if (const Instance instance = bindings.instances[instances[i].id]; !states.visible(instance.seed->mesh_node, instance.clip_offset_s())) instances.edit(i).mask = 0;
 }
 
 /// Whether the middle of an interval cannot stand for what is evaluated there: materials and the environment.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "frame/clip_offsets.h"
 #include "frame/property_rig.h"
 
 namespace kadr {
@@ -24,32 +25,38 @@ public:
     /// The states of all switches at one time.
     class States {
     public:
-        bool visible(int node) const;
+        /// @param clip_offset_s  of the copy that the node is seen in
+        bool visible(int node, double clip_offset_s = 0) const;
 
     private:
         friend class VisibilityRig;
         const VisibilityRig* rig_ = nullptr;
-        std::vector<bool> on_;  ///< [switch], with those above it
+        double time_s_ = 0;
+        std::vector<bool> on_;  ///< [switch] without an offset, with those above it
     };
     States at(double time_s) const;
 
-    std::vector<double> discontinuities(double begin_s, double end_s) const;
+    /// Times inside (begin, end) at which something is shown or hidden in any copy.
+    std::vector<double> discontinuities(double begin_s, double end_s, const ClipOffsets& offsets) const;
 
 private:
     /// A node, or an entry's root, that is hidden at some time.
     struct Switch {
         int above = -1;  ///< into switches_; always before this one
+        int entry = -1;
         bool rest = true;
         std::optional<DrivenProperty> by_clip;
         const SwitchTrack* by_shot = nullptr;  ///< wins over clips and file
-        bool on(double time_s) const;
+        bool on(double time_s, double clip_offset_s) const;
+        void add_discontinuities(double begin_s, double end_s, double clip_offset_s, std::vector<double>& times) const;
     };
-    int entry_switch(const SceneSpec& spec);
+    int entry_switch(int entry, const SceneSpec& spec);
     /// The switch of a node; none where it is always visible. @param by_shot  null: the shot says nothing of it
     static std::optional<Switch> switch_for(bool rest, const SwitchTrack* by_shot, const std::vector<DrivenProperty>& by_clip);
     using ByShot = std::map<int, const SwitchTrack*>;  ///< by node
     void add_tree(const Scene& scene, const ByShot& by_shot, const PropertyRig& properties, int entry, int root, int above);
 
+    bool clips_switch_ = false;
     std::vector<Switch> switches_;
     std::vector<int> switch_of_;  ///< [node] the nearest at or above it; -1: none
 };

@@ -187,7 +187,7 @@ TEST(SwitchMix, FollowsWeightsThatRunAlongCurves) {
     stage.play({track<double>({{0, 1}, {1, 0}}), track<double>({{0, 0}, {1, 1}})});
     for (std::size_t i = 0; i < 2; ++i) stage.layer(i).weight.keys[0].ease = Ease{0.42, 0, 1, 1};  // slow, then fast
     const BoundShot bound = stage.bind();
-    const std::vector<double> times = bound.bindings().visibility.discontinuities(0, 1);
+    const std::vector<double> times = bound.bindings().visibility.discontinuities(0, 1, {{0}});
     ASSERT_EQ(times.size(), 1u);
     EXPECT_GT(times[0], 0.6);
     EXPECT_NEAR(evaluate(stage.layer(1).weight, times[0]), 0.5, 1e-11);
@@ -211,7 +211,7 @@ RC_GTEST_PROP(SwitchMixProperty, ChangesWhereItSaysAndNowhereElse, ()) {
     stage.play(weights);
     const BoundShot bound = stage.bind();
     const VisibilityRig& rig = bound.bindings().visibility;
-    std::vector<double> times = rig.discontinuities(0, 1);
+    std::vector<double> times = rig.discontinuities(0, 1, {{0}});
     std::sort(times.begin(), times.end());
     times.insert(times.begin(), 0);
     times.push_back(1);
