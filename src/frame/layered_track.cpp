@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <type_traits>
 
 #include "anim/wrapped.h"
@@ -114,59 +113,6 @@ bool bends_at(const Track<T>& track, const PlayingLayer& layer, double clip_s) {
     return layer.loop != ClipLayer::Loop::hold || (clip_s >= track.keys.front().time_s && clip_s <= track.keys.back().time_s);
 }
 
-double turn_of(const Track<glm::dquat>& track, const LayerWindow& window) {
-    double turn = 0;
-    for (const ClipPass& pass : window.passes) turn += turn_of(track, pass.low_s(), pass.high_s());
-    if (window.passes_left_out > 0) turn += window.passes_left_out * turn_of(track, window.layer->in_s, window.layer->out_s);
-    return turn;
-}
-
-/// Between any two rotations that the mean is made of, whatever their weights.
-double widest_angle(const LayeredTrack<glm::dquat>& track, Layers layers, double time_s, double clip_offset_s) {
-    std::vector<glm::dquat> rotations{track.rest};
-    for (const auto& part : track.parts) rotations.push_back(evaluate(*part.track, layer_of<glm::dquat>(part, layers).clip_time(time_s, clip_offset_s)));
-    double widest = 0;
-    for (std::size_t i = 0; i < rotations.size(); ++i)
-        for (std::size_t k = 0; k < i; ++k) widest = std::max(widest, angle_between(rotations[i], rotations[k]));
-    return widest;
-}
-
-/// Two of the rotations of a mix; the last is the property's own.
-class MixedPair {
-public:
-    MixedPair(const LayeredTrack<glm::dquat>& track, Layers layers, std::size_t a, std::size_t b, double clip_offset_s)
-        : track_(track), layers_(layers), a_(a), b_(b), offset_s_(clip_offset_s) {}
-
-    /// Where they are half a turn apart, the cosine of half their angle, followed without a change of sign, is zero.
-    std::optional<double> flip_between(double from_s, double to_s) const {
-        const glm::dquat a = rotation(a_, from_s), b = rotation(b_, from_s);
-        const auto cosine = [&](double time_s) { return glm::dot(nearer(a, rotation(a_, time_s)), nearer(b, rotation(b_, time_s))); };
-        const double first = glm::dot(a, b);
-        if (!(first * cosine(to_s) < 0)) return std::nullopt;
-        for (int step = 0; step < 60; ++step) {
-            const double middle = 0.5 * (from_s + to_s);
-            (first * cosine(middle) > 0 ? from_s : to_s) = middle;
-        }
-        return weight(a_, to_s) > kNothing && weight(b_, to_s) > kNothing ? std::optional(to_s) : std::nullopt;
-    }
-
-private:
-    static glm::dquat nearer(const glm::dquat& to, const glm::dquat& q) { return glm::dot(to, q) < 0 ? -q : q; }
-    glm::dquat rotation(std::size_t i, double time_s) const {
-        if (i == track_.parts.size()) return track_.rest;
-        return evaluate(*track_.parts[i].track, layer_of<glm::dquat>(track_.parts[i], layers_).clip_time(time_s, offset_s_));
-    }
-    double weight(std::size_t i, double time_s) const {
-        double sum = 0;
-        return shares_at(track_, layers_, time_s, sum)[i];
-    }
-
-    const LayeredTrack<glm::dquat>& track_;
-    Layers layers_;
-    std::size_t a_, b_;
-    double offset_s_;
-};
-
 }  // namespace
 
 template <class T>
@@ -237,6 +183,22 @@ void add_key_times(const LayeredTrack<T>& track, LayerWindows windows, std::vect
     }
 }
 
+double turn_of(const Track<glm::dquat>& track, const LayerWindow& window) {
+    double turn = 0;
+    for (const ClipPass& pass : window.passes) turn += turn_of(track, pass.low_s(), pass.high_s());
+    if (window.passes_left_out > 0) turn += window.passes_left_out * turn_of(track, window.layer->in_s, window.layer->out_s);
+    return turn;
+}
+
+double widest_angle(const LayeredTrack<glm::dquat>& track, Layers layers, double time_s, double clip_offset_s) {
+    std::vector<glm::dquat> rotations{track.rest};
+    for (const auto& part : track.parts) rotations.push_back(evaluate(*part.track, layer_of<glm::dquat>(part, layers).clip_time(time_s, clip_offset_s)));
+    double widest = 0;
+    for (std::size_t i = 0; i < rotations.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) widest = std::max(widest, angle_between(rotations[i], rotations[k]));
+    return widest;
+}
+
 // The mean of two rotations moves by no more than the two move, and by what their weights carry it along the arc between
 // them: of a sideways move at one end, a slerp over half an angle w <= pi/2 passes on sin((1-u)w) / sin(w) <= 1. The mean
 // of more can be carried farther: twice as far where they lie within 120 degrees of it.
@@ -253,18 +215,6 @@ double turn_of(const LayeredTrack<glm::dquat>& track, Layers layers, LayerWindow
     const double share = fade.mixed > 2 ? 2 : 1;
     if (fade.change == 0) return share * turns;
     return share * (turns + fade.change * std::min(widest_angle(track, layers, windows[0].begin_s, clip_offset_s) + turns, kHalfTurn));
-}
-
-void add_flips(const LayeredTrack<glm::dquat>& track, Layers layers, double begin_s, double end_s, double clip_offset_s, std::vector<double>& times) {
-    const std::size_t own = track.parts.size();
-    for (std::size_t a = 0; a <= own; ++a)
-        for (std::size_t b = 0; b < a; ++b) {
-            const MixedPair pair(track, layers, a, b, clip_offset_s);
-            for (int i = 0; i < kCurveSteps; ++i)
-                if (const auto flip = pair.flip_between(std::lerp(begin_s, end_s, i / static_cast<double>(kCurveSteps)),
-                                                        std::lerp(begin_s, end_s, (i + 1) / static_cast<double>(kCurveSteps))))
-                    times.push_back(*flip);
-        }
 }
 
 template <class T>

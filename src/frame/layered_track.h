@@ -49,9 +49,11 @@ void add_key_times(const LayeredTrack<T>& track, LayerWindows windows, std::vect
 /// mixes more than two rotations. Jumps of weights and of loops do not count: the window is split there.
 double turn_of(const LayeredTrack<glm::dquat>& track, Layers layers, LayerWindows windows, double clip_offset_s);
 
-/// Times of the shot inside (begin, end) at which two of the rotations that are mixed pass half a turn from each other:
-/// there the shorter arc changes sides, and their mean jumps.
-void add_flips(const LayeredTrack<glm::dquat>& track, Layers layers, double begin_s, double end_s, double clip_offset_s, std::vector<double>& times);
+/// Radians that a layer's track turns in its window.
+double turn_of(const Track<glm::dquat>& track, const LayerWindow& window);
+
+/// Between any two rotations that the mean is made of, whatever their weights.
+double widest_angle(const LayeredTrack<glm::dquat>& track, Layers layers, double time_s, double clip_offset_s);
 
 /// Whether a track of a repeated layer has another value where it starts again than where it ended, by more than the
 /// rounding of a file's floats.

@@ -7,6 +7,7 @@
 
 #include "frame/decompose.h"
 #include "frame/key_grid.h"
+#include "frame/mean_flips.h"
 
 namespace kadr {
 
@@ -151,7 +152,7 @@ glm::dmat4 NodeRig::scene_from_node(int node, double time_s, double clip_offset_
 }
 
 bool NodeRig::clips_jump() const {
-    return !vector_steps_.empty() || !rotation_steps_.empty() || std::find(jumps_at_seam_.begin(), jumps_at_seam_.end(), true) != jumps_at_seam_.end();
+    return !vector_steps_.empty() || !rotation_steps_.empty() || !mixed_rotations_.empty() || std::find(jumps_at_seam_.begin(), jumps_at_seam_.end(), true) != jumps_at_seam_.end();
 }
 
 std::vector<glm::dmat4> NodeRig::all_transforms(double time_s, double clip_offset_s) const {
@@ -256,7 +257,7 @@ std::vector<double> NodeRig::discontinuities(double begin_s, double end_s, doubl
     }
     for (const auto& step : vector_steps_) add_steps(*step.track, windows[index(step.layer)], times);
     for (const auto& step : rotation_steps_) add_steps(*step.track, windows[index(step.layer)], times);
-    for (const int pose : mixed_rotations_) add_flips(poses_[index(pose)].rotation, layers_, begin_s, end_s, clip_offset_s, times);
+    for (const int pose : mixed_rotations_) add_flips(poses_[index(pose)].rotation, layers_, windows, clip_offset_s, times);
     return times;
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/glm.hpp>
+
+#include "anim/rotation_math.h"
 #include "frame/decompose.h"
 
 namespace kadr {
@@ -10,42 +13,72 @@ namespace kadr {
 namespace {
 
 constexpr int kMostSteps = 100;
-constexpr double kClose = 1e-15;  // of half an angle: below the rounding of a product of quaternions
+constexpr int kMostSquarings = 50;    // tells eigenvalues apart that differ by 1e-14 of themselves
+constexpr double kClose = 1e-15;      // of half an angle: below the rounding of a product of quaternions
+constexpr double kOnThePlane = 1e-9;  // a cosine whose sign is rounding
+constexpr double kNothing = 1e-12;    // a weight beside which the rest is everything
 
-/// Half the rotation vector of a unit quaternion, by the shorter way.
-glm::dvec3 log_of(glm::dquat q) {
-    if (q.w < 0) q = -q;
-    const glm::dvec3 v(q.x, q.y, q.z);
-    const double sine = glm::length(v);
-    return sine < 1e-15 ? v : v * (std::atan2(sine, q.w) / sine);
+glm::dvec4 vector_of(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+
+double trace(const glm::dmat4& m) { return m[0][0] + m[1][1] + m[2][2] + m[3][3]; }
+
+/// Of a symmetric matrix without negative eigenvalues and with trace 1: squared again and again, all but the greatest
+/// eigenvalue vanish beside it.
+glm::dvec4 greatest_eigenvector(glm::dmat4 m) {
+    for (int i = 0; i < kMostSquarings; ++i) {
+        m = m * m;
+        const double size = trace(m);
+        m /= size;
+        if (size > 1 - 1e-15) break;  // rank one
+    }
+    const auto longer = [&](int a, int b) { return glm::dot(m[a], m[a]) < glm::dot(m[b], m[b]); };
+    return glm::normalize(m[std::max({0, 1, 2, 3}, longer)]);
 }
 
-glm::dquat exp_of(const glm::dvec3& half) {
-    const double angle = glm::length(half);
-    const glm::dvec3 v = half * (angle < 1e-15 ? 1.0 : std::sin(angle) / angle);
-    return {std::cos(angle), v.x, v.y, v.z};
+glm::dquat middle_of(std::span<const WeightedRotation> rotations) {
+    glm::dmat4 sum(0);
+    double total = 0;
+    for (const WeightedRotation& r : rotations) {
+        sum += glm::outerProduct(vector_of(r.rotation), vector_of(r.rotation)) * r.weight;
+        total += r.weight;
+    }
+    const glm::dvec4 q = greatest_eigenvector(sum / total);
+    return {q.w, q.x, q.y, q.z};
 }
 
-/// The weighted sum with all on the side of the heaviest: near the mean, and it where all agree.
-glm::dquat first_guess(std::span<const WeightedRotation> rotations) {
-    const auto heaviest = std::max_element(rotations.begin(), rotations.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
-    glm::dquat sum(0, 0, 0, 0);
-    for (const WeightedRotation& r : rotations)
-        sum += r.rotation * (glm::dot(heaviest->rotation, r.rotation) < 0 ? -r.weight : r.weight);
-    return glm::length(sum) > 1e-9 ? glm::normalize(sum) : heaviest->rotation;
+/// Of the rotations that are not half a turn from the middle.
+const glm::dquat& heaviest_beside(const glm::dquat& middle, std::span<const WeightedRotation> rotations) {
+    const auto weight = [&](const WeightedRotation& r) { return std::abs(glm::dot(middle, r.rotation)) > kOnThePlane ? r.weight : -1; };
+    return std::max_element(rotations.begin(), rotations.end(), [&](const auto& a, const auto& b) { return weight(a) < weight(b); })->rotation;
 }
 
 }  // namespace
+
+MeanSides mean_sides(std::span<const WeightedRotation> rotations) {
+    MeanSides sides{middle_of(rotations), {}, 1};
+    const glm::dquat heaviest = nearer(sides.middle, heaviest_beside(sides.middle, rotations));
+    for (const WeightedRotation& r : rotations) {
+        const double cosine = glm::dot(sides.middle, r.rotation);
+        if (r.weight > kNothing) sides.margin = std::min(sides.margin, std::abs(cosine));
+        // Half a turn from the middle rounding must not decide.
+        sides.flipped.push_back((std::abs(cosine) > kOnThePlane ? cosine : glm::dot(heaviest, r.rotation)) < 0);
+    }
+    return sides;
+}
 
 glm::dquat mean_rotation(std::span<const WeightedRotation> rotations) {
     if (rotations.size() == 1) return rotations[0].rotation;
     double total = 0;
     for (const WeightedRotation& r : rotations) total += r.weight;
     if (rotations.size() == 2) return slerp_shorter(rotations[0].rotation, rotations[1].rotation, rotations[1].weight / total);
-    glm::dquat mean = first_guess(rotations);
+    const MeanSides sides = mean_sides(rotations);
+    glm::dquat mean = sides.middle;
     for (int step = 0; step < kMostSteps; ++step) {
         glm::dvec3 towards(0);
-        for (const WeightedRotation& r : rotations) towards += log_of(glm::conjugate(mean) * r.rotation) * (r.weight / total);
+        for (std::size_t i = 0; i < rotations.size(); ++i) {
+            const glm::dquat& q = rotations[i].rotation;
+            towards += log_of(glm::conjugate(mean) * (sides.flipped[i] ? -q : q)) * (rotations[i].weight / total);
+        }
         mean = glm::normalize(mean * exp_of(towards));
         if (glm::length(towards) < kClose) break;
     }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <tbb/parallel_for.h>
 
 #include "base/hash.h"
 #include "base/text.h"
@@ -49,12 +50,11 @@ Part inside_of(const Part& part) {
 
 /// Copies that play their clips at other times jump at other times.
 std::vector<double> node_discontinuities(const Bindings& bindings, double begin_s, double end_s) {
-    std::vector<double> all = bindings.rig.discontinuities(begin_s, end_s);
-    if (!bindings.rig.clips_jump()) return all;
-    for (const double offset : bindings.clip_offsets_s) {
-        const std::vector<double> times = bindings.rig.discontinuities(begin_s, end_s, offset);
-        all.insert(all.end(), times.begin(), times.end());
-    }
+    if (!bindings.rig.clips_jump()) return bindings.rig.discontinuities(begin_s, end_s);
+    std::vector<std::vector<double>> of_offset(bindings.clip_offsets_s.size());
+    tbb::parallel_for(std::size_t{0}, of_offset.size(), [&](std::size_t i) { of_offset[i] = bindings.rig.discontinuities(begin_s, end_s, bindings.clip_offsets_s[i]); });
+    std::vector<double> all;
+    for (const std::vector<double>& times : of_offset) all.insert(all.end(), times.begin(), times.end());
     return all;
 }
 
