@@ -2,35 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "anim/wrapped.h"
+#include <limits>
 
 namespace kadr {
 
 namespace {
 
+/// Of what a few operations on numbers leave undecided.
+double rounding_of(double magnitude) { return 4 * std::numeric_limits<double>::epsilon() * magnitude; }
+
 bool loops(Extrapolation mode) { return mode == Extrapolation::repeat || mode == Extrapolation::pingpong; }
 
 }  // namespace
 
-double wrapped(double x, double period) {
+double wrapped(double x, double period, double magnitude) {
     double rest = std::fmod(x, period);
     if (rest < 0) rest += period;
-    return rest < std::max(period - kTick, 0.5 * period) ? rest : 0;
+    return rest < period - rounding_of(magnitude) ? rest : 0;
 }
 
 FoldedTime fold(const KeyedSpan& span, double time_s) {
-    if (time_s >= span.first_s && time_s < span.last_s) return {time_s};
-    const bool after = time_s >= span.last_s;
+    const double magnitude = std::abs(time_s) + std::abs(span.first_s) + std::abs(span.last_s);
+    const bool at_seam = span.after == Extrapolation::repeat && span.last_s - time_s <= rounding_of(magnitude);
+    if (time_s >= span.first_s && time_s < span.last_s && !at_seam) return {time_s};
+    const bool after = time_s >= span.last_s || at_seam;
     const double end = after ? span.last_s : span.first_s;
     const double past = time_s - span.first_s;
     switch (after ? span.after : span.before) {
         case Extrapolation::hold: return {end};
         case Extrapolation::continued: return {end, false, time_s - end};
-        case Extrapolation::repeat: return {span.first_s + wrapped(past, span.seconds())};
+        case Extrapolation::repeat: return {span.first_s + wrapped(past, span.seconds(), magnitude)};
         case Extrapolation::pingpong: break;
     }
-    const double there_and_back = wrapped(past, 2 * span.seconds());
+    const double there_and_back = wrapped(past, 2 * span.seconds(), magnitude);
     if (there_and_back < span.seconds()) return {span.first_s + there_and_back};
     return {std::min(span.last_s, span.first_s + (2 * span.seconds() - there_and_back)), true};
 }

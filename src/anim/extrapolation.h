@@ -8,6 +8,11 @@ namespace kadr {
 /// the seam where the ends differ; pingpong: there and back; continued: straight on with the end's slope.
 enum class Extrapolation { hold, repeat, pingpong, continued };
 
+/// x modulo a period, in [0, period). What lies before a multiple by no more than rounding is that multiple: frame 51 is three
+/// times 17 frames, whatever 51/24 and 17/24 seconds are rounded to.
+/// @param magnitude  of the numbers that x was computed from
+double wrapped(double x, double period, double magnitude);
+
 /// The keyed span of a track, and what it does beyond it. @pre first_s < last_s
 struct KeyedSpan {
     double first_s, last_s;

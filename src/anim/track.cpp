@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "anim/segments.h"
-#include "anim/wrapped.h"
+#include "anim/tick.h"
 #include "base/error.h"
 #include "base/text.h"
 

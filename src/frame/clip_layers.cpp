@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "anim/wrapped.h"
+#include "anim/tick.h"
 
 namespace kadr {
 
 namespace {
+
+/// Of the numbers that a layer's time at a time of the shot is computed from.
+double magnitude_of(const PlayingLayer& layer, double time_s, double offset_s) {
+    return std::abs(layer.start_s) + std::abs(layer.speed) * (std::abs(time_s) + std::abs(offset_s) + std::abs(layer.at_s)) + std::abs(layer.in_s) + std::abs(layer.out_s);
+}
 
 /// One stretch of clip time, counted from the one that starts at `in`: clip time runs up in it, or down (pingpong).
 double time_in_cell(const PlayingLayer& layer, double cell, double unbounded_s) {
@@ -33,10 +39,11 @@ double PlayingLayer::weight_at(double time_s) const { return std::max(evaluate(w
 double PlayingLayer::clip_time(double time_s, double offset_s) const {
     const double time = unbounded(time_s, offset_s), length = out_s - in_s;
     if (loop == ClipLayer::Loop::hold || !(length > 0)) return std::clamp(time, in_s, out_s);
+    const double magnitude = magnitude_of(*this, time_s, offset_s);
     // By ticks, so that the same time of a later pass is the same to the last bit; glTF's keys are single floats and lie on them.
-    const auto ticks = [](double seconds) { return std::nearbyint(seconds / kTick) * kTick; };
-    if (loop == ClipLayer::Loop::repeat) return speed < 0 ? out_s - ticks(wrapped(out_s - time, length)) : in_s + ticks(wrapped(time - in_s, length));
-    const double phase = ticks(wrapped(time - in_s, 2 * length));
+    const auto into_pass = [&](double seconds, double period) { return std::nearbyint(wrapped(seconds, period, magnitude) / kTick) * kTick; };
+    if (loop == ClipLayer::Loop::repeat) return speed < 0 ? out_s - into_pass(out_s - time, length) : in_s + into_pass(time - in_s, length);
+    const double phase = into_pass(time - in_s, 2 * length);
     return phase <= length ? in_s + phase : std::max(out_s - (phase - length), in_s);
 }
 
@@ -66,6 +73,8 @@ LayerWindow window_of(const PlayingLayer& layer, double begin_s, double end_s, d
     const double length = layer.out_s - layer.in_s;
     const double from = layer.unbounded(begin_s, offset_s), to = layer.unbounded(end_s, offset_s);
     const double step = to > from ? 1 : -1;
+    // What a seam at an end of the window leaves beyond it by rounding is no pass.
+    const double sliver = 1024 * std::numeric_limits<double>::epsilon() * std::max(magnitude_of(layer, begin_s, offset_s), magnitude_of(layer, end_s, offset_s));
     double first = std::floor((std::min(from, to) - layer.in_s) / length), last = std::floor((std::max(from, to) - layer.in_s) / length);
     if (layer.loop == ClipLayer::Loop::hold) {
         if (last < 0 || first > 0) return window;
@@ -76,7 +85,7 @@ LayerWindow window_of(const PlayingLayer& layer, double begin_s, double end_s, d
     for (int i = 0; cell >= first && cell <= last && i < kMostPasses; ++i, cell += step) {
         const double bottom = layer.in_s + cell * length, top = layer.in_s + (cell + 1) * length;
         const double enter = std::clamp(from, bottom, top), leave = std::clamp(to, bottom, top);
-        if (enter == leave) continue;
+        if (!(std::abs(leave - enter) > sliver)) continue;
         const auto shot_time = [&](double clip_s) { return begin_s + (clip_s - from) / (to - from) * (end_s - begin_s); };
         window.passes.push_back({shot_time(enter), shot_time(leave), time_in_cell(layer, cell, enter), time_in_cell(layer, cell, leave)});
     }

@@ -37,6 +37,7 @@ PlayingLayer make_layer(const ClipLayer& layer, std::vector<int> clips, const Sc
 struct ClipPass {
     double begin_s = 0, end_s = 0;  ///< of the shot
     double from_s = 0, to_s = 0;    ///< of the clip, at begin and at end
+    // Never empty: from and to are more than rounding apart.
     double low_s() const { return from_s < to_s ? from_s : to_s; }
     double high_s() const { return from_s < to_s ? to_s : from_s; }
     double shot_time(double clip_s) const { return begin_s + (clip_s - from_s) / (to_s - from_s) * (end_s - begin_s); }

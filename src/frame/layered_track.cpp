@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "anim/wrapped.h"
+#include "anim/tick.h"
 #include "frame/decompose.h"
 
 namespace kadr {

@@ -43,7 +43,7 @@ struct Part {
 /// The times that a part is evaluated at: just inside of jumps, where step keys still have the part's own value.
 Part inside_of(const Part& part) {
     const double length = part.close_s - part.open_s;
-    const double ulps = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(part.open_s), std::abs(part.close_s));
+    const double ulps = 8192 * std::numeric_limits<double>::epsilon() * std::max(std::abs(part.open_s), std::abs(part.close_s));
     const double inset = std::min(std::max(1e-7 * length, ulps), 0.25 * length);
     return {part.open_s + (part.jump_at_open ? inset : 0), part.close_s - (part.jump_at_close ? inset : 0), false, false};
 }
@@ -68,33 +68,44 @@ std::vector<double> morph_discontinuities(const Bindings& bindings, double begin
     return all;
 }
 
-std::vector<double> jumps_inside(const BoundShot& shot, double begin_s, double end_s) {
+/// Jumps in an interval. One that is near an end, by the rounding of times, or by less than a part is worth, counts as at it.
+struct Jumps {
+    std::vector<double> inside;  ///< ascending
+    bool at_begin = false, at_end = false;
+};
+
+Jumps jumps_in(const BoundShot& shot, double begin_s, double end_s) {
+    // Jumps of different tracks that fall together differ by the rounding of their clips' times.
+    const double together = std::max(1e-9 * (end_s - begin_s), 4096 * std::numeric_limits<double>::epsilon() * std::max(std::abs(begin_s), std::abs(end_s)));
+    const double from = begin_s - together, to = end_s + together;
     std::vector<double> all;
-    for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), begin_s, end_s), morph_discontinuities(shot.bindings(), begin_s, end_s), camera_discontinuities(shot, begin_s, end_s),
-                                             light_discontinuities(shot, begin_s, end_s), environment_discontinuities(shot.shot().environment, begin_s, end_s),
-                                             shot.bindings().visibility.discontinuities(begin_s, end_s, shot.bindings().entry_offsets_s), shot.bindings().materials.discontinuities(begin_s, end_s)})
+    for (const std::vector<double>& times : {node_discontinuities(shot.bindings(), from, to), morph_discontinuities(shot.bindings(), from, to), camera_discontinuities(shot, from, to),
+                                             light_discontinuities(shot, from, to), environment_discontinuities(shot.shot().environment, from, to),
+                                             shot.bindings().visibility.discontinuities(from, to, shot.bindings().entry_offsets_s), shot.bindings().materials.discontinuities(from, to)})
         all.insert(all.end(), times.begin(), times.end());
     std::sort(all.begin(), all.end());
-    // Jumps of different tracks that fall together differ by the rounding of their clips' times.
-    const double together = 1e-9 * (end_s - begin_s);
-    all.erase(std::unique(all.begin(), all.end(), [together](double a, double b) { return b - a <= together; }), all.end());
-    std::erase_if(all, [&](double time) { return time - begin_s <= together || end_s - time <= together; });
-    return all;
+    Jumps jumps;
+    for (const double time : all) {
+        if (time - begin_s <= together) jumps.at_begin = true;
+        else if (end_s - time <= together) jumps.at_end = true;
+        else if (jumps.inside.empty() || time - jumps.inside.back() > together) jumps.inside.push_back(time);
+    }
+    return jumps;
 }
 
 std::vector<Part> split(const BoundShot& shot, const FrameTime& frame) {
-    std::vector<double> jumps;
-    if (frame.close_s > frame.open_s) jumps = jumps_inside(shot, frame.open_s, frame.close_s);
-    if (jumps.size() >= kMostParts)
-        throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("the shutter of frame {} holds {} jumps: step keys, loops that start again", frame.number, jumps.size()),
+    Jumps jumps;
+    if (frame.close_s > frame.open_s) jumps = jumps_in(shot, frame.open_s, frame.close_s);
+    if (jumps.inside.size() >= kMostParts)
+        throw InputError(problem_at({shot.shot().file.string(), 0, 0}, fmt::format("the shutter of frame {} holds {} jumps: step keys, loops that start again", frame.number, jumps.inside.size()),
                                     fmt::format("expected fewer than {}; close the shutter earlier", kMostParts)));
     std::vector<Part> parts;
     double open = frame.open_s;
-    for (const double jump : jumps) {
-        parts.push_back({open, jump, !parts.empty(), true});
+    for (const double jump : jumps.inside) {
+        parts.push_back({open, jump, jumps.at_begin || !parts.empty(), true});
         open = jump;
     }
-    parts.push_back({open, frame.close_s, !parts.empty(), false});
+    parts.push_back({open, frame.close_s, jumps.at_begin || !parts.empty(), jumps.at_end});
     return parts;
 }
 
@@ -291,7 +302,7 @@ private:
 
 }  // namespace
 
-std::vector<double> shot_discontinuities(const BoundShot& shot, double begin_s, double end_s) { return jumps_inside(shot, begin_s, end_s); }
+std::vector<double> shot_discontinuities(const BoundShot& shot, double begin_s, double end_s) { return jumps_in(shot, begin_s, end_s).inside; }
 
 std::vector<SceneSnapshot> make_snapshots(const BoundShot& shot, const FrameTime& frame) { return FrameSnapshots(shot, frame).make(); }
 

@@ -259,5 +259,19 @@ RC_GTEST_PROP(ExtrapolationProperty, EveryFrameRateSeesTheSameValuesAtCommonTime
     }
 }
 
+// By rounding alone a third of the frames that fall on a seam showed the end of the pass before. The tolerance: a few ulps
+// of 80 s, at up to 300 a second.
+TEST(Repeat, FramesOnASeamBeginTheNextPass) {
+    for (const double fps : {24.0, 25.0, 30.0, 24000 / 1001.0})
+        for (int frames = 1; frames <= 48; ++frames) {
+            Track<double> track;
+            track.keys = {{3 / fps, 10, {}, {}, {}}, {(3 + frames) / fps, 20, {}, {}, {}}};
+            track.before = track.after = Extrapolation::repeat;
+            for (int pass = -20; pass <= 40; ++pass)
+                EXPECT_NEAR(evaluate(track, (3 + frames * pass) / fps), 10, 1e-9) << frames << " frames, pass " << pass << " at " << fps;
+            EXPECT_EQ(evaluate(track, std::nextafter(track.keys[1].time_s, 0)), 10);
+        }
+}
+
 }  // namespace
 }  // namespace kadr

@@ -74,6 +74,40 @@ RC_GTEST_PROP(ClipTimeProperty, PassesAreWhatTheClipTimeDoes, ()) {
     if (loop != Loop::hold) RC_ASSERT(std::abs(covered - 0.5 * std::abs(speed)) < 1e-9);
 }
 
+// An interval that ends on a seam but for rounding had an empty pass beyond it: shot_time divided nothing by nothing, and
+// the passes' ends lay on the other side of the seam than clip_time. Found by the property above.
+TEST(ClipTime, PassesAreNeverEmpty) {
+    struct Case {
+        Loop loop;
+        double speed, in_s, length_s, begin_s;
+    };
+    for (const Case& c : std::vector<Case>{{Loop::repeat, 2.46, 1.93, 1.909, -3.075}, {Loop::repeat, -1.85, 1.616, 0.5, -2.125}, {Loop::pingpong, 4.85, 1.769, 2.511, 3.455},
+                                           {Loop::repeat, -2.25, 1.135, 0.025, -4.725}, {Loop::repeat, 2.4, 0.92, 0.058, -3.215}}) {
+        const PlayingLayer layer = layer_of(c.loop, c.speed, c.in_s + 0.3, c.in_s, c.in_s + c.length_s);
+        const LayerWindow window = window_of(layer, c.begin_s, c.begin_s + 0.5, 0.125);
+        ASSERT_FALSE(window.passes.empty());
+        for (const ClipPass& pass : window.passes) {
+            EXPECT_GT(pass.high_s() - pass.low_s(), 1e-9);
+            EXPECT_NEAR(pass.shot_time(pass.to_s), pass.end_s, 1e-9);
+            EXPECT_NEAR(layer.clip_time(std::lerp(pass.begin_s, pass.end_s, 0.5), 0.125), std::lerp(pass.from_s, pass.to_s, 0.5), 1e-9);
+        }
+    }
+}
+
+// Frames that fall on a seam: 17 frames played again and again, at any frame rate. By rounding alone a third of them
+// showed the end of the pass before.
+TEST(ClipTime, FramesOnASeamBeginTheNextPass) {
+    constexpr double kUlps = 1e-12;  // a few of 80 s
+    for (const double fps : {24.0, 25.0, 30.0, 24000 / 1001.0})
+        for (int frames = 1; frames <= 48; ++frames)
+            for (int pass = -20; pass <= 40; ++pass) {
+                const double seam_s = (frames * pass) / fps, length_s = frames / fps;
+                EXPECT_NEAR(layer_of(Loop::repeat, 1, 0, 0, length_s).clip_time(seam_s, 0), 0, kUlps) << frames << " frames, pass " << pass << " at " << fps;
+                EXPECT_NEAR(layer_of(Loop::repeat, -1, length_s, 0, length_s).clip_time(seam_s, 0), length_s, kUlps) << frames << " frames, pass " << pass << " at " << fps;
+                EXPECT_NEAR(layer_of(Loop::repeat, 1, 0, 0, length_s, 7 / fps).clip_time((frames * pass + 7) / fps, 0), 0, kUlps) << frames << " frames, pass " << pass << " at " << fps;
+            }
+}
+
 TEST(ClipTime, OfATinyLoopInALongWindowIsCountedNotListed) {
     const PlayingLayer layer = layer_of(Loop::repeat, 1000, 0, 0, 1e-3);
     const LayerWindow window = window_of(layer, 0, 3600, 0);

@@ -1,12 +1,13 @@
 #include "frame/snapshot.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "stage.h"
 
 namespace kadr {
 namespace {
 
+using testing::ElementsAre;
 using test::kPi;
 using test::message_of;
 using test::Stage;
@@ -25,6 +26,60 @@ TEST(Snapshot, SplitsTheShutterWhereSomethingJumps) {
     EXPECT_EQ(parts[0].motion.srt[0].translation[0], 0);
     EXPECT_EQ(parts[1].motion.srt[0].translation[0], 1);
     EXPECT_NE(parts[0].geometry_key, parts[1].geometry_key);
+}
+
+/// Where along x a cube is while the shutter of a frame is open: at the opening, half-way and at the closing.
+std::vector<double> xs_of(const Stage& stage, int frame) {
+    const std::vector<SceneSnapshot> parts = stage.snapshots(frame);
+    std::vector<double> xs;
+    for (const SceneSnapshot& part : parts)
+        for (const double u : {0.0, 0.5, 1.0}) xs.push_back(interpolate(part.motion, 0, u)[3].x + part.render_origin.x);
+    return xs;
+}
+
+TEST(Snapshot, AJumpAtTheClosingBelongsToTheNextFrame) {
+    Stage stage;
+    stage.add_node("cube");
+    stage.shot.scenes[0].transform.translate = track<glm::dvec3>({{0, {0, 0, 0}}, {1, {1, 0, 0}}, {2, {3, 0, 0}}}, Interpolation::step);
+    EXPECT_THAT(xs_of(stage, 0), ElementsAre(0, 0, 0));
+    EXPECT_THAT(xs_of(stage, 1), ElementsAre(1, 1, 1));
+    // Whatever the key's time is rounded to.
+    for (const double beside : {0.0, 2.0}) {
+        stage.shot.scenes[0].transform.translate = track<glm::dvec3>({{0, {0, 0, 0}}, {std::nextafter(1, beside), {1, 0, 0}}, {2, {3, 0, 0}}}, Interpolation::step);
+        EXPECT_THAT(xs_of(stage, 0), ElementsAre(0, 0, 0));
+        EXPECT_THAT(xs_of(stage, 1), ElementsAre(1, 1, 1));
+    }
+}
+
+TEST(Snapshot, AJumpNearAnEndCountsAsAtItLateInAShot) {
+    Stage stage;
+    stage.add_node("cube");
+    const double late_s = 1000001 - 5e-7;  // some thousand ulps from the closing: clips' times may be off by as much there
+    stage.shot.scenes[0].transform.translate = track<glm::dvec3>({{0, {0, 0, 0}}, {late_s, {1, 0, 0}}}, Interpolation::step);
+    EXPECT_THAT(xs_of(stage, 1000000), ElementsAre(0, 0, 0));
+    EXPECT_THAT(xs_of(stage, 1000001), ElementsAre(1, 1, 1));
+}
+
+TEST(Snapshot, SeamsOnTheShuttersEndsAreNotBlurred) {
+    constexpr double kInset = 1e-5;  // of what moves 17 m in 17 frames: parts are looked at a ten-millionth inside of their ends
+    const auto near = [](double x) { return testing::DoubleNear(x, kInset); };
+    for (const double fps : {24.0, 25.0, 30.0}) {
+        Stage stage;
+        const int cube = stage.add_node("cube");
+        stage.shot.timing.fps = {static_cast<std::int64_t>(fps), 1};
+        Track<glm::dvec3> run = track<glm::dvec3>({{0, {0, 0, 0}}, {17 / fps, {17, 0, 0}}});
+        Stage by_clip = stage;
+        by_clip.animate(cube).translation = run;
+        by_clip.shot.scenes[0].layers[0].loop = ClipLayer::Loop::repeat;
+        by_clip.shot.scenes[0].layers[0].out_s = 17 / fps;
+        run.after = Extrapolation::repeat;
+        stage.shot.scenes[0].transform.translate = run;
+        for (int pass = 1; pass <= 12; ++pass)
+            for (const Stage* one : {&stage, &by_clip}) {
+                EXPECT_THAT(xs_of(*one, 17 * pass), ElementsAre(near(0), near(0.5), near(1))) << pass << " at " << fps;
+                EXPECT_THAT(xs_of(*one, 17 * pass - 1), ElementsAre(near(16), near(16.5), near(17))) << pass << " at " << fps;
+            }
+    }
 }
 
 TEST(Snapshot, SplitsForCamerasLightsAndSlowedClips) {
