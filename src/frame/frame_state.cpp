@@ -321,7 +321,7 @@ BoundShot::BoundShot(const Shot& shot, const Scene& scene) : shot_(&shot), scene
     bindings->instances = InstanceList(bindings->seeds, scene, std::move(copies));
     check_limits(shot, scene, *bindings);
     divide_instances(*bindings);
-    if (shot.use_scene_lights) bindings->lights = lights_of(shot, scene, bindings->rig, bindings->instances);
+    if (shot.use_scene_lights) bindings->lights = lights_of(scene, bindings->rig, bindings->instances);
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) fixed_.push_back(!bindings->rig.moves(static_cast<int>(node)));
     warnings_ = warnings_of(shot, *bindings);
     for (Diagnostic& warning : limit_warnings(scene, scenes, sequence_)) warnings_.push_back(std::move(warning));
