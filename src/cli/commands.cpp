@@ -13,6 +13,7 @@
 #include "cli/reporter.h"
 #include "device/device.h"
 #include "output/frame_writer.h"
+#include "render/denoising.h"
 #include "render/reel_job.h"
 #include "render/reel_plan.h"
 #include "shot/shot_parser.h"
@@ -228,6 +229,22 @@ int run_info(const Invocation& invocation) {
     return kDone;
 }
 
+/// Not a device, but as much a part of the machine: whether render.denoise: oidn would work.
+void print_denoiser(bool json) {
+    RenderSpec asked;
+    asked.denoise = DenoiserKind::oidn;
+    std::string version, reason;
+    try {
+        version = denoiser_of(asked)->version();
+    } catch (const InputError& error) {
+        reason = error.diagnostics().front().found;
+    }
+    if (json)
+        print(json_line({{"name", "oidn"}, {"description", "Open Image Denoise " + version}, {"usable", reason.empty()}, {"reason", reason}}));
+    else
+        print(fmt::format("{:<6} {}; the denoiser of render.denoise\n", "oidn", reason.empty() ? "usable: version " + version : "not usable: " + reason));
+}
+
 int run_devices(const Invocation& invocation) {
     for (const DeviceReport& device : list_devices()) {
         if (invocation.json)
@@ -237,6 +254,7 @@ int run_devices(const Invocation& invocation) {
             print(fmt::format("{:<6} {}{}\n", device.name, device.usable ? "usable" : "not usable: " + device.reason,
                               device.description.empty() ? "" : "; " + device.description));
     }
+    print_denoiser(invocation.json);
     return kDone;
 }
 

@@ -39,6 +39,13 @@ struct DeviceStatistics {
     StructureCounts structures;
 };
 
+/// How acceleration structures are built, of a whole shot.
+struct BuildSettings {
+    BuildQuality quality = BuildQuality::medium;
+    bool robust = false;  ///< rays cannot slip between triangles that share an edge
+    bool operator==(const BuildSettings&) const = default;
+};
+
 /// A renderer on some hardware: three calls and no back-end type across them.
 class Device {
 public:
@@ -46,7 +53,7 @@ public:
     virtual std::string name() const = 0;  ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
     /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image,
     /// copied.
-    virtual void load(const Scene& scene, const Image* environment) = 0;
+    virtual void load(const Scene& scene, const Image* environment, const BuildSettings& build = {}) = 0;
     virtual void set_frame(const SceneSnapshot& snapshot) = 0;
     virtual void render(const Pass& pass, Film& film) = 0;  ///< adds to the film
     virtual DeviceStatistics statistics() const = 0;

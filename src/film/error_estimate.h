@@ -19,12 +19,17 @@ inline constexpr double kRelativeErrorFloor = 0.01;
 struct ErrorEstimate {
     bool known = false;                      ///< both halves have samples somewhere
     double relmse = 0;                       ///< mean over pixels and R, G, B of error² / (value² + 0.01)
-    double relmse_low = 0, relmse_high = 0;  ///< where it is in 95 of 100 frames, as far as the pixels' spread tells
+    double relmse_low = 0, relmse_high = 0;  ///< where it is in 95 of 100 frames
     std::size_t unknown_pixels = 0;          ///< one half is empty, or a sum overflowed
 };
 
 /// The value in the denominator is the pixel's own, less half of its noise: I² is too large by the noise, and I² less
 /// the noise (A B) would be too small where one half alone holds a bright sample.
+///
+/// Such a sample may be a rare event over a dark surface, or a highlight that the other half missed; one frame does not
+/// tell. The interval spans both: its low end takes the pixel's own value for the truth, its high end what the pixels
+/// around that look like this one show (no less than the darker half). Both are widened by the spread over the pixels,
+/// once for the estimate and once for the truth, which is one frame's too.
 ///
 /// @param scale  of radiance in the picture over that in the film (physical exposure)
 ErrorEstimate estimate_error(const Film& film, double scale = 1);

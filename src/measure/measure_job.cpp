@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "output/atomic_file.h"
-#include "output/cache_folder.h"
+#include "base/cache_folder.h"
 #include "output/frame_writer.h"
 #include "render/frame_identity.h"
 #include "render/output_plan.h"
@@ -41,7 +41,7 @@ public:
     Measurement run() {
         const Shot shot = plan();
         render_reference(shot);
-        Sweep sweep = plan_sweep(shot.render, options_.axes, extent_.sweep);
+        Sweep sweep = plan_sweep(shot.render, options_.axes, sweep_size_);
         result_.left_out = std::move(sweep.left_out);
         const int count = static_cast<int>(sweep.variants.size());
         for (int i = 0; i < count; ++i)
@@ -67,8 +67,12 @@ private:
         result_.reference_samples = 2 * extent_.reference_samples;
         result_.folder = fs::absolute(options_.output.empty() ? fs::path(shot.name + ".measure") : options_.output);
         prepare_folders({result_.folder});
-        const LoadedShot loaded(shot);
+        LoadOptions headers;
+        headers.decode_textures = false;
+        const LoadedShot loaded(shot, headers);
         result_.frames = chosen_frames(loaded.bound().timing().frames);
+        sweep_size_ = extent_.sweep;
+        for (const TextureData& texture : loaded.scene().textures) sweep_size_.largest_texture_px = std::max({sweep_size_.largest_texture_px, texture.width, texture.height});
         return shot;
     }
 
@@ -233,6 +237,7 @@ private:
     const MeasureOptions& options_;
     const MeasureEvents& events_;
     const Extent& extent_;
+    SweepSize sweep_size_;
     Measurement result_;
     ViewSpec metered_;   ///< the reference's, where the exposure is automatic
     std::vector<Replicates> references_;

@@ -41,7 +41,7 @@ struct MeasuredVariant {
 
 /// Where the error of the shot's own settings comes from: relative mean squares.
 struct ErrorShares {
-    double noise = 0, bounces = 0, motion = 0, clamp = 0, other = 0;
+    double noise = 0, bounces = 0, motion = 0, clamp = 0, denoise = 0, texture = 0, other = 0;
 };
 
 /// What the figures say to do.

@@ -60,6 +60,24 @@ int samples_for_good(const std::vector<MeasuredVariant>& variants, int own_sampl
     return std::min(kMostAdvised, static_cast<int>(std::exp2(std::ceil(std::log2(wanted)))));
 }
 
+/// Whether the denoised picture of the samples at hand looks good, and is to be had for less than the samples that do without.
+bool denoising_pays(const std::vector<MeasuredVariant>& variants, int samples, int wanted) {
+    const MeasuredVariant* oidn = find(variants, "denoise", "oidn");
+    return oidn && wanted > samples && oidn->error.flip <= kGoodFlip && oidn->seconds < kWorthIt * variants.front().seconds * wanted / samples;
+}
+
+std::string denoising_text(const MeasuredVariant& own, const MeasuredVariant& oidn, bool advised) {
+    std::string text = fmt::format("Denoised, {} becomes FLIP {:.3f} in {:.3g} s", advised ? "that" : "it", oidn.error.flip, oidn.seconds);
+    if (own.flicker && oidn.flicker) text += fmt::format(", and what flickers from frame to frame goes from {:.4f} to {:.4f}", *own.flicker, *oidn.flicker);
+    return text + (advised ? ": less time than those samples take. " : ". ");
+}
+
+/// The key below `render` that makes a variant of the shot, and its value.
+std::pair<std::string, std::string> setting_of(const Variant& variant) {
+    constexpr std::string_view kRender = "render.";
+    return {variant.set.front().first.substr(kRender.size()), variant.set.front().second};
+}
+
 std::string percent(double part, double whole) { return fmt::format("{:.0f} %", whole > 0 ? 100 * part / whole : 0.0); }
 
 }  // namespace
@@ -73,24 +91,28 @@ void mark_front(std::vector<MeasuredVariant>& variants) {
 
 ErrorShares shares_of(const std::vector<MeasuredVariant>& variants) {
     const FrameError& own = variants.front().error;
-    ErrorShares shares{own.noise, share(variants, "bounces", "32"), share(variants, "motion_tolerance", "0.02 px"), share(variants, "clamp", "none"), 0};
-    shares.other = std::max(own.bias - shares.bounces - shares.motion - shares.clamp, 0.0);
+    ErrorShares shares{own.noise, share(variants, "bounces", "32"), share(variants, "motion_tolerance", "0.02 px"), share(variants, "clamp", "none"),
+                       share(variants, "denoise", "none"), share(variants, "texture", "none"), 0};
+    shares.other = std::max(own.bias - shares.bounces - shares.motion - shares.clamp - shares.denoise - shares.texture, 0.0);
     return shares;
 }
 
 Recommendation recommend(const std::vector<MeasuredVariant>& variants, const RenderSpec& render, int samples) {
     const MeasuredVariant& own = variants.front();
     const ErrorShares shares = shares_of(variants);
-    const double whole = shares.noise + shares.bounces + shares.motion + shares.clamp + shares.other;
+    const double whole = shares.noise + shares.bounces + shares.motion + shares.clamp + shares.denoise + shares.texture + shares.other;
     Recommendation advice;
     const int wanted = samples_for_good(variants, samples);
-    advice.render.emplace_back("samples", std::to_string(wanted));
+    const bool denoised = denoising_pays(variants, samples, wanted);
+    advice.render.emplace_back("samples", std::to_string(denoised ? samples : wanted));
     advice.text = fmt::format("At {} samples a pixel a frame takes {:.3g} s and is off by FLIP {:.3f}: {} of the error is noise. ", samples, own.seconds, own.error.flip, percent(shares.noise, whole));
     advice.text += fmt::format("{} samples are the least that bring FLIP to {} or below{}. ", wanted, kGoodFlip, wanted == kMostAdvised ? ", as far as this advice goes" : "");
+    if (const MeasuredVariant* oidn = find(variants, "denoise", "oidn")) advice.text += denoising_text(own, *oidn, denoised);
+    if (denoised) advice.render.emplace_back("denoise", "oidn");
     const double noise = own.error.noise * samples / wanted;
-    for (const char* axis : {"integrator", "bounces", "motion_tolerance"})
+    for (const char* axis : {"integrator", "bounces", "motion_tolerance", "texture", "build"})
         if (const MeasuredVariant* better = cheapest(variants, axis, noise)) {
-            advice.render.emplace_back(axis, better->variant.value);
+            advice.render.push_back(setting_of(better->variant));
             const bool faster = better->seconds < own.seconds;
             advice.text += fmt::format("{}: {} {} {} of the time{}. ", axis, better->variant.value, faster ? "saves" : "costs", percent(std::abs(1 - better->seconds / own.seconds), 1),
                                        faster ? ", and what it leaves out is lost in the noise" : ", and takes away a bias that shows");

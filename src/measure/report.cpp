@@ -52,7 +52,7 @@ Json json_of(const Measurement& m) {
     for (const MeasuredVariant& variant : m.variants) json["variants"].push_back(json_of(variant));
     json["left_out"] = Json::array();
     for (const LeftOut& left : m.left_out) json["left_out"].push_back({{"what", left.what}, {"reason", left.reason}});
-    json["shares"] = {{"noise", m.shares.noise}, {"bounces", m.shares.bounces}, {"motion", m.shares.motion}, {"clamp", m.shares.clamp}, {"other", m.shares.other}};
+    json["shares"] = {{"noise", m.shares.noise}, {"bounces", m.shares.bounces}, {"motion", m.shares.motion}, {"clamp", m.shares.clamp}, {"denoise", m.shares.denoise}, {"texture", m.shares.texture}, {"other", m.shares.other}};
     json["recommendation"] = {{"text", m.recommendation.text}, {"yaml", m.recommendation.yaml()}, {"measured", json_of(m.recommendation.measured)}};
     return json;
 }

@@ -14,8 +14,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 # Okabe and Ito's palette: told apart with any colour vision.
 COLORS = {"shot": "#000000", "samples": "#0072B2", "bounces": "#D55E00", "integrator": "#CC79A7",
-          "motion_tolerance": "#009E73", "clamp": "#E69F00", "recommended": "#666666"}
-SHARES = {"noise": "#0072B2", "bounces": "#D55E00", "motion": "#009E73", "clamp": "#E69F00", "other": "#999999"}
+          "motion_tolerance": "#009E73", "clamp": "#E69F00", "denoise": "#56B4E9", "texture": "#8B4513", "build": "#6A3D9A", "robust": "#B2A000",
+          "recommended": "#666666"}
+SHARES = {"noise": "#0072B2", "bounces": "#D55E00", "motion": "#009E73", "clamp": "#E69F00", "denoise": "#56B4E9", "texture": "#8B4513", "other": "#999999"}
 MARKS = {"shot": "*", "recommended": "P"}
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1b1b1b; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1.2rem; }

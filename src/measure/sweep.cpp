@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,16 +15,15 @@ namespace kadr {
 
 namespace {
 
-constexpr std::array<const char*, 5> kAxes{"samples", "bounces", "integrator", "motion_tolerance", "clamp"};
+constexpr std::array<const char*, 9> kAxes{"samples", "bounces", "integrator", "motion_tolerance", "clamp", "denoise", "texture", "build", "robust"};
 
 /// What a renderer may offer a choice of, and this one does not.
 constexpr std::pair<const char*, const char*> kNoChoice[] = {
     {"motion_frames", "their number follows from render.motion_tolerance: sweep motion_tolerance"},
-    {"build", "structures are built in one quality"},
-    {"denoise", "there is no denoiser"},
-    {"texture", "textures are filtered in one way"},
     {"device", "the CPU is the only device"},
 };
+
+constexpr int kLeastTexture = 16;   // smaller ones cost nothing
 
 class Planner {
 public:
@@ -37,6 +37,10 @@ public:
         if (axis == "integrator") integrator();
         if (axis == "motion_tolerance") motion_tolerance();
         if (axis == "clamp") clamp();
+        if (axis == "denoise") other("denoise", render_.denoise == DenoiserKind::none ? "oidn" : "none");
+        if (axis == "texture") texture();
+        if (axis == "build") build();
+        if (axis == "robust") other("robust", render_.robust ? "false" : "true");
     }
     Sweep take() { return std::move(sweep_); }
 
@@ -57,9 +61,21 @@ private:
         for (const int count : counts)
             if (!uniform || count != own.total) add("bounces", std::to_string(count), {{"render.bounces", std::to_string(count)}});
     }
-    void integrator() {
-        const char* other = render_.integrator == Integrator::direct ? "path" : "direct";
-        add("integrator", other, {{"render.integrator", other}});
+    void integrator() { other("integrator", render_.integrator == Integrator::direct ? "path" : "direct"); }
+    /// The one value that the shot does not have.
+    void other(const char* axis, const char* value) { add(axis, value, {{fmt::format("render.{}", axis), value}}); }
+    /// Down to an eighth of the largest one, and without a limit where the shot has one.
+    void texture() {
+        if (size_.largest_texture_px <= kLeastTexture) return sweep_.left_out.push_back({"texture", fmt::format("no texture of the shot is larger than {} px", kLeastTexture)});
+        if (render_.texture_limit_px > 0) add("texture", "none", {{"render.texture_limit", "none"}});
+        const int largest = std::bit_ceil(static_cast<unsigned>(size_.largest_texture_px));
+        for (int limit = largest / 2; limit >= std::max(kLeastTexture, largest / 8); limit /= size_.quick ? 4 : 2)
+            if (limit != render_.texture_limit_px) add("texture", fmt::format("{} px", limit), {{"render.texture_limit", fmt::format("{} px", limit)}});
+    }
+    void build() {
+        constexpr std::pair<const char*, BuildQuality> kQualities[] = {{"low", BuildQuality::low}, {"medium", BuildQuality::medium}, {"high", BuildQuality::high}};
+        for (const auto& [name, quality] : kQualities)
+            if (quality != render_.build) other("build", name);
     }
     void motion_tolerance() {
         for (const double px : size_.quick ? std::vector{0.02, 0.5} : std::vector{0.02, 0.1, 0.5, 2.0})

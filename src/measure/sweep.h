@@ -32,6 +32,7 @@ struct SweepSize {
     int samples = 64;
     std::vector<int> sample_counts{4, 16, 64, 256};
     bool quick = false;  ///< fewer values of each axis
+    int largest_texture_px = 0;  ///< longest side of the shot's textures; 0: it has none
 };
 
 /// The names that --sweep takes. @throws InputError  for an unknown name, or one of what this Kadr has no choice in

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "output/atomic_file.h"
-#include "output/cache_folder.h"
+#include "base/cache_folder.h"
 #include "output/child_process.h"
 
 namespace kadr {

@@ -5,6 +5,7 @@
 #include "output/encoder.h"
 #include "output/image_io.h"
 #include "render/clip_report.h"
+#include "render/denoising.h"
 #include "render/loaded_shot.h"
 #include "render/output_plan.h"
 #include "render/render_job.h"
@@ -65,6 +66,7 @@ CheckReport check_shot(const std::filesystem::path& path, const ShotOverrides& o
         collect(problems, [&] {
             plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
         });
+    collect(problems, [&] { denoiser_of(shot.render); });
     if (shot.environment.image) collect(problems, [&] { image_io().read_metadata(*shot.environment.image); });
     for (Diagnostic& problem : colliding_patterns(shot.output, bound.frames)) problems.push_back(std::move(problem));
     check_folders(shot, bound.frames, problems);

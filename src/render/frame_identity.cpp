@@ -7,6 +7,8 @@
 
 #include "base/text.h"
 #include "base/version.h"
+#include "render/denoising.h"
+#include "shot/schema.h"
 #include "shot/shot_hash.h"
 
 namespace kadr {
@@ -60,7 +62,48 @@ void add_sampling(Metadata& metadata, const SamplingReport& sampling) {
     metadata["error_display"] = fmt::format("{:.4g}", sampling.display_error);
 }
 
-const char* name_of(Integrator integrator) { return integrator == Integrator::direct ? "direct" : "path"; }
+/// The word that the format has for a value of an enum.
+template <class Enum>
+std::string word_of(const char* path, Enum value) {
+    return std::string(choices_of(*find_field(path))[static_cast<std::size_t>(value)].name);
+}
+
+std::string limit_of(const std::optional<double>& limit) { return limit ? format_number(*limit) : "none"; }
+
+/// How the picture was asked for, setting by setting.
+void add_settings(Metadata& metadata, const RenderSpec& render) {
+    if (!render.quality.empty()) metadata["quality"] = render.quality;
+    metadata["integrator"] = word_of("render.integrator", render.integrator);
+    metadata["bounces"] = fmt::format("{} (diffuse {}, glossy {}, transmission {})", render.bounces.total, render.bounces.diffuse,
+                                      render.bounces.glossy, render.bounces.transmission);
+    metadata["filter"] = fmt::format("{} {} px", word_of("render.filter.type", render.filter), format_number(render.filter_width_px));
+    metadata["motion_tolerance_px"] = format_number(render.motion_tolerance_px);
+    metadata["clamp_direct"] = limit_of(render.clamp_direct);
+    metadata["clamp_indirect"] = limit_of(render.clamp_indirect);
+    metadata["build"] = word_of("render.build", render.build);
+    metadata["robust"] = render.robust ? "yes" : "no";
+    metadata["texture_limit_px"] = render.texture_limit_px > 0 ? std::to_string(render.texture_limit_px) : "none";
+    const Denoiser* denoiser = denoiser_of(render);
+    metadata["denoise"] = word_of("render.denoise", render.denoise) + (denoiser ? " " + denoiser->version() : "");
+    metadata["seed"] = std::to_string(render.seed) + (render.seed_animated ? ", animated" : "");
+    metadata["cull_backfaces"] = render.cull_backfaces ? "yes" : "no";
+}
+
+/// What decides how many samples a pixel gets.
+void add_sampling_settings(Metadata& metadata, const RenderSpec& render) {
+    metadata["samples"] = std::to_string(render.samples);
+    if (render.max_error) metadata["max_error"] = format_number(*render.max_error);
+    if (render.max_error || render.time_budget_s || render.time_budget_shot_s) metadata["samples_at_least"] = std::to_string(render.at_least);
+    if (render.time_budget_s) metadata["time_budget_s"] = format_number(*render.time_budget_s);
+    if (render.time_budget_shot_s) metadata["time_budget_shot_s"] = format_number(*render.time_budget_shot_s);
+}
+
+std::string shutter_text(const Shutter& shutter) {
+    const auto end = [](double frames, double seconds) {
+        return seconds != 0 ? fmt::format("{} f + {} s", format_number(frames), format_number(seconds)) : format_number(frames) + " f";
+    };
+    return fmt::format("{} to {}{}", end(shutter.open_frames, shutter.open_s), end(shutter.close_frames, shutter.close_s), shutter.physical ? ", physical" : "");
+}
 
 }  // namespace
 
@@ -79,24 +122,17 @@ bool is_linear_file(const std::filesystem::path& path) {
 }
 
 Metadata shot_metadata(const Shot& shot, const std::string& device_name) {
-    const RenderSpec& render = shot.render;
     Metadata metadata{
         {"shot", shot.name},
-        {"samples", std::to_string(render.samples)},
-        {"seed", std::to_string(render.seed)},
-        {"integrator", name_of(render.integrator)},
-        {"bounces", fmt::format("{} (diffuse {}, glossy {}, transmission {})", render.bounces.total, render.bounces.diffuse,
-                                render.bounces.glossy, render.bounces.transmission)},
-        {"motion_tolerance_px", format_number(render.motion_tolerance_px)},
         {"version", kVersion},
         {"device", device_kind(device_name)},
+        {"fps", format_number(shot.timing.fps.value())},
+        {"shutter", shutter_text(shot.shutter)},
+        {"view", fmt::format("{}, {}", word_of("view.transform", shot.view.transform),
+                             shot.view.automatic ? "auto" : format_number(shot.view.exposure_stops) + " stops")},
     };
-    if (render.clamp_direct) metadata["clamp_direct"] = format_number(*render.clamp_direct);
-    if (render.clamp_indirect) metadata["clamp_indirect"] = format_number(*render.clamp_indirect);
-    if (render.max_error) metadata["max_error"] = format_number(*render.max_error);
-    if (render.max_error || render.time_budget_s || render.time_budget_shot_s) metadata["samples_at_least"] = std::to_string(render.at_least);
-    if (render.time_budget_s) metadata["time_budget_s"] = format_number(*render.time_budget_s);
-    if (render.time_budget_shot_s) metadata["time_budget_shot_s"] = format_number(*render.time_budget_shot_s);
+    add_settings(metadata, shot.render);
+    add_sampling_settings(metadata, shot.render);
     return metadata;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "output/view.h"
+#include "render/denoising.h"
 #include "render/loaded_shot.h"
 #include "render/render_job.h"
 #include "render/sample_shares.h"
@@ -173,7 +174,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
 
     const bool steered = spec.max_error || std::isfinite(budget_s);
     const std::vector<SampleRange> all = deal_samples(weights_of(parts), spec.samples);
-    Film& film = cleared_film(shot.shot().image, request.layers, needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
+    Film& film = cleared_film(shot.shot().image, layers_to_render(request.layers, spec), needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
     Rounds rounds(*device_, film, parts, frame);
     for (int count = 0, first = 0; (count = steering.next_round(film)) > 0; first += count) {
         const double before = steered ? static_cast<double>(first) / spec.samples : 0, part = static_cast<double>(count) / (steered ? spec.samples : count);
@@ -184,6 +185,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
     rounds.gather();
     frame.sampling = report_sampling(film, steering.stopped_by(), view, scale);
     frame.image = film.develop();
+    denoise(frame.image, request.layers, spec);
     expose(frame.image, scale);
     frame.seconds = watch.seconds();
     return frame;
@@ -193,6 +195,7 @@ double meter_exposure(const Shot& shot, const Scene& scene, FrameRenderer& rende
     Shot small = shot;
     small.image = limited_width(small.image, kMeterWidth);
     small.render.fix_samples(std::min(small.render.samples, kMeterSamples));
+    small.render.denoise = DenoiserKind::none;  // an average is none the worse for noise
     const BoundShot bound(small, scene);
     return metered_exposure(renderer.render(bound, first, {}).image);
 }

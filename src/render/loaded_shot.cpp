@@ -5,9 +5,17 @@
 #include <utility>
 
 namespace kadr {
+namespace {
+
+LoadOptions with_limits(LoadOptions options, const RenderSpec& render) {
+    options.texture_limit_px = render.texture_limit_px;
+    return options;
+}
+
+}  // namespace
 
 LoadedShot::LoadedShot(Shot shot, const LoadOptions& options)
-    : shot_(std::move(shot)), scene_(load_scene(scene_requests(shot_), options)), bound_(shot_, scene_) {}
+    : shot_(std::move(shot)), scene_(load_scene(scene_requests(shot_), with_limits(options, shot_.render))), bound_(shot_, scene_) {}
 
 std::vector<Diagnostic> LoadedShot::warnings() const {
     std::vector<Diagnostic> all = shot_.warnings;

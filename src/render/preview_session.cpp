@@ -8,6 +8,7 @@
 #include "base/version.h"
 #include "output/frame_writer.h"
 #include "output/view.h"
+#include "render/denoising.h"
 #include "render/environment_image.h"
 #include "render/frame_identity.h"
 
@@ -41,6 +42,7 @@ PreviewSession::PreviewSession(const RenderOptions& options, const RenderEvents&
       renderer_(*choice_.device),
       view_(loaded_.shot().view) {
     for (const Diagnostic& warning : loaded_.warnings()) events_.warning(warning);
+    denoiser_of(shot().render);  // a missing one is known before the first ray
     load_device(*choice_.device, loaded_);
 }
 

@@ -13,6 +13,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/delivery.h"
+#include "render/denoising.h"
 #include "render/environment_image.h"
 #include "render/frame_cache.h"
 #include "render/frame_identity.h"
@@ -100,6 +101,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     if (shot.output.video)
         video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
     loaded_.emplace(std::move(shot));
+    denoiser_of(loaded_->shot().render);  // a missing one is known before anything is written
     if (loaded_->shot().view.automatic)
         metered_frame_ = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
     identity_.emplace(*loaded_, metered_frame_);

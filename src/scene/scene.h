@@ -188,6 +188,7 @@ struct SceneFileRequest {
 struct LoadOptions {
     bool decode_textures = true;   ///< `kadr check` reads image headers alone
     bool load_geometry = true;     ///< reserved for lazy loading; checks always run
+    int texture_limit_px = 0;      ///< larger textures are averaged down to this longest side; 0: as they are
 };
 
 /// Reads glTF files (.gltf, .glb). Two requests for the same file share geometries, materials and textures.

@@ -55,7 +55,7 @@ public:
         build_geometries();
         attach_primitives();
         const std::vector<int> roots = add_missing_roots(std::move(file_roots));
-        scene_.textures = textures_.load(options.decode_textures);
+        scene_.textures = textures_.load(options);
         scene_.warnings = std::move(document_.warnings);
         SceneFile file;
         file.content = document_.content();

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "scene/image_decoder.h"
+#include "scene/texture_limit.h"
 
 namespace kadr {
 
@@ -80,7 +81,7 @@ int TextureSet::use(int gltf_texture, bool srgb) {
     return index;
 }
 
-std::vector<TextureData> TextureSet::load(bool decode) {
+std::vector<TextureData> TextureSet::load(const LoadOptions& options) {
     std::vector<std::size_t> images;  // those in use, ascending
     for (const Use& use : uses_) images.push_back(use.image);
     std::sort(images.begin(), images.end());
@@ -93,7 +94,7 @@ std::vector<TextureData> TextureSet::load(bool decode) {
     run_all(images.size(), [&](std::size_t i) {
         if (first[i] != i) return;
         const std::string pointer = fmt::format("/images/{} ({})", images[i], document_.image_name(images[i]));
-        if (decode) {
+        if (options.decode_textures) {
             decoded[i] = decode_image(document_, pointer, bytes[i]);
         } else {
             const ImageHeader header = read_image_header(document_, pointer, bytes[i]);
@@ -123,6 +124,7 @@ std::vector<TextureData> TextureSet::load(bool decode) {
         if (--remaining[source] == 0) texture.texels = std::move(image.texels);
         else texture.texels = image.texels;
     }
+    if (options.texture_limit_px > 0) run_all(result.size(), [&](std::size_t i) { limit_size(result[i], options.texture_limit_px); });
     return result;
 }
 

@@ -18,8 +18,8 @@ public:
     /// Index of the texture in the result of load(); -1 (with a warning) for a glTF texture that names no image.
     int use(int gltf_texture, bool srgb);
 
-    /// @param decode  false: images are read and their headers checked, texels stay empty
-    std::vector<TextureData> load(bool decode);
+    /// Without options.decode_textures images are read and their headers checked, texels stay empty.
+    std::vector<TextureData> load(const LoadOptions& options);
 
 private:
     struct Use {

@@ -11,11 +11,11 @@ namespace {
 
 using Value = std::pair<const char*, const char*>;
 
-constexpr std::array<Value, 3> kDraft{{{"samples", "4"}, {"bounces", "1"}, {"motion_tolerance", "0.5 px"}}};
-constexpr std::array<Value, 3> kPreview{{{"samples", "16"}, {"bounces", "3"}, {"motion_tolerance", "0.25 px"}}};
-constexpr std::array<Value, 3> kFinal{{{"samples", "{ max_error: 0.01, at_least: 64, at_most: 1024 }"}, {"bounces", "8"}, {"motion_tolerance", "0.1 px"}}};
-constexpr std::array<Value, 4> kReference{
-    {{"samples", "4096"}, {"bounces", "32"}, {"motion_tolerance", "0.02 px"}, {"clamp", "{ direct: none, indirect: none }"}}};
+constexpr std::array<Value, 5> kDraft{{{"samples", "4"}, {"bounces", "1"}, {"motion_tolerance", "0.5 px"}, {"texture_limit", "1024 px"}, {"build", "low"}}};
+constexpr std::array<Value, 5> kPreview{{{"samples", "16"}, {"bounces", "3"}, {"motion_tolerance", "0.25 px"}, {"texture_limit", "2048 px"}, {"build", "medium"}}};
+constexpr std::array<Value, 5> kFinal{{{"samples", "{ max_error: 0.01, at_least: 64, at_most: 1024 }"}, {"bounces", "8"}, {"motion_tolerance", "0.1 px"}, {"texture_limit", "none"}, {"build", "medium"}}};
+constexpr std::array<Value, 8> kReference{{{"samples", "4096"}, {"bounces", "32"}, {"motion_tolerance", "0.02 px"}, {"texture_limit", "none"}, {"build", "high"},
+                                           {"robust", "true"}, {"denoise", "none"}, {"clamp", "{ direct: none, indirect: none }"}}};
 
 constexpr std::array<QualityBlock, 4> kBlocks{{
     {"draft", "motion and framing; noisy, light after the first bounce is missing", kDraft},

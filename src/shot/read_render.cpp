@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "shot/quality.h"
 #include "shot/section_readers.h"
 #include "shot/track_reader.h"
 
@@ -64,6 +65,10 @@ std::optional<double> read_limit(const Field& field) {
     return is_word(field, "none") ? std::nullopt : read_number(field);
 }
 
+void read_texture_limit(const Field& field, RenderSpec& render) {
+    if (const std::optional<double> limit = read_limit(field)) render.texture_limit_px = static_cast<int>(*limit);
+}
+
 void read_seed(const Section& section, RenderSpec& render) {
     const Field field = section["seed"];
     if (!field) return;
@@ -114,7 +119,9 @@ void read_exposure(const Section& section, ViewSpec& view) {
 RenderSpec read_render(const Section& shot) {
     RenderSpec render;
     const Section section = shot.section("render");
-    read_choice_index(section["quality"]);  // its values are laid under the document before it is read
+    const Field quality = section["quality"];
+    // Its values are laid under the document before it is read; the name is kept for what is said of the picture.
+    if (const auto index = read_choice_index(quality)) render.quality = quality_blocks()[static_cast<std::size_t>(*index)].name;
     const Field integrator = section["integrator"];
     if (integrator) render.integrator_where = location_of(integrator.node->place);
     assign(render.integrator, read_choice<Integrator>(integrator));
@@ -125,7 +132,12 @@ RenderSpec read_render(const Section& shot) {
     const Section clamp = section.section("clamp");
     render.clamp_direct = read_limit(clamp["direct"]);
     render.clamp_indirect = read_limit(clamp["indirect"]);
-    read_choice_index(section["denoise"]);
+    const Field denoise = section["denoise"];
+    if (denoise) render.denoise_where = location_of(denoise.node->place);
+    assign(render.denoise, read_choice<DenoiserKind>(denoise));
+    assign(render.build, read_choice<BuildQuality>(section["build"]));
+    assign(render.robust, read_boolean(section["robust"]));
+    read_texture_limit(section["texture_limit"], render);
     read_seed(section, render);
     assign(render.cull_backfaces, read_boolean(section["cull_backfaces"]));
     return render;

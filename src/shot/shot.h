@@ -157,6 +157,9 @@ struct EnvironmentSpec {
 
 enum class Integrator { direct, path };
 enum class FilterKind { box, gaussian, mitchell, blackman_harris };
+enum class DenoiserKind { none, oidn };
+/// How much work goes into acceleration structures: better ones take longer to build and less to trace.
+enum class BuildQuality { low, medium, high };
 
 struct RenderSpec {
     SourceLocation integrator_where;
@@ -181,6 +184,12 @@ struct RenderSpec {
     double filter_width_px = 1.5;  ///< full width of the support
     double motion_tolerance_px = 0.1;
     std::optional<double> clamp_direct, clamp_indirect;
+    DenoiserKind denoise = DenoiserKind::none;
+    SourceLocation denoise_where;
+    BuildQuality build = BuildQuality::medium;
+    bool robust = false;          ///< rays cannot slip between triangles that share an edge
+    int texture_limit_px = 0;     ///< larger textures are halved until they fit; 0: as they are
+    std::string quality;          ///< the step of the ladder (quality.h) that filled in what was not given; empty: none
     std::uint32_t seed = 0;
     bool seed_animated = false;
     bool cull_backfaces = false;

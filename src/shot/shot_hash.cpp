@@ -89,7 +89,7 @@ private:
     void add(const RenderSpec& r) {
         (*this)(r.integrator, r.samples, r.at_least, r.max_error, r.time_budget_s, r.time_budget_shot_s, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission,
                 r.filter, r.filter_width_px, r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed,
-                r.seed_animated, r.cull_backfaces);
+                r.seed_animated, r.cull_backfaces, r.denoise, r.build, r.robust, r.texture_limit_px);
     }
     template <class T>
     void add(const std::vector<T>& list) {

@@ -74,6 +74,8 @@ output:
 
 
 class ProgramTest(unittest.TestCase):
+    denoiser = "/nowhere/libOpenImageDenoise.so.2"   # the library that the program is told to open
+
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory()
         self.folder = Path(self._folder.name)
@@ -87,7 +89,7 @@ class ProgramTest(unittest.TestCase):
         return path
 
     def environment(self):
-        return {**os.environ, "KADR_CACHE": str(self.folder / "cache")}
+        return {**os.environ, "KADR_CACHE": str(self.folder / "cache"), "KADR_OIDN_LIBRARY": self.denoiser}
 
     def start(self, *arguments, **more):
         return subprocess.Popen([KADR, *map(str, arguments)], cwd=more.pop("cwd", self.folder), text=True,

@@ -1,6 +1,7 @@
 """Frames and videos from outside: resume, kill, interrupt, determinism, smoke, installation."""
 
 import json
+import os
 import signal
 import subprocess
 import time
@@ -71,6 +72,28 @@ class Render(ProgramTest):
         self.assertEqual(self.frames(), ["ball.0000.png"], "patterns of the file are relative to the file")
         self.run_kadr("render", "../ball.yaml", "--frames", "0", "--output", "mine.{frame}.png", cwd=elsewhere)
         self.assertEqual(self.frames("elsewhere/*.png"), ["mine.0.png"])
+
+    def test_a_denoiser_that_is_missing_is_said_at_its_key_before_anything_is_written(self):
+        self.shot.write_text(self.shot.read_text().replace("samples: 4,", "samples: 4, denoise: oidn,"))
+        line = 1 + self.shot.read_text().splitlines().index("render: { integrator: path, samples: 4, denoise: oidn, bounces: { total: 2 } }")
+        for command in ("render", "preview", "check"):
+            process = self.run_kadr(command, self.shot, code=2)
+            self.assertRegex(process.err, rf"^ball.yaml:{line}:\d+: error: cannot open the denoiser: /nowhere/libOpenImageDenoise.so.2: .*\n"
+                                          r"(?s:.*)  install Open Image Denoise 2 \(pip install pyoidn brings it\), or set KADR_OIDN_LIBRARY to its "
+                                          r"libOpenImageDenoise.so.2; or use render.denoise: none")
+        self.assertEqual(list(self.folder.glob("out*")), [])
+        self.assertFalse({row["name"]: row for row in map(json.loads, self.run_kadr("devices", "--json").out.splitlines())}["oidn"]["usable"])
+
+    @unittest.skipUnless(os.environ.get("KADR_TEST_OIDN_LIBRARY"), "KADR_TEST_OIDN_LIBRARY names no libOpenImageDenoise.so.2")
+    def test_denoised_frames_are_others_and_say_so(self):
+        self.denoiser = os.environ["KADR_TEST_OIDN_LIBRARY"]
+        self.run_kadr("render", self.shot, "--frames", "0")
+        plain = png(self.folder / "out" / "ball.0000.png")
+        self.assertEqual(plain[1]["kadr:denoise"], "none")
+        self.assertEqual(self.summary(self.shot, "--frames", "0", "--set", "render.denoise=oidn")["reused"], 0)
+        denoised = png(self.folder / "out" / "ball.0000.png")
+        self.assertRegex(denoised[1]["kadr:denoise"], r"^oidn 2\.\d+\.\d+$")
+        self.assertNotEqual(plain[0], denoised[0])
 
     def test_unwritable_folder(self):
         (self.folder / "file").write_text("not a folder")

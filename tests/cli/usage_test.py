@@ -105,7 +105,18 @@ class Usage(ProgramTest):
         lines = dict(line.split(None, 1) for line in self.run_kadr("info", "out/ball.0001.png").out.splitlines())
         self.assertEqual(lines["shot"], "ball")
         self.assertEqual(lines["frame"], "1")
-        self.assertEqual(json.loads(self.run_kadr("info", "--json", "out/ball.0001.png").out)["samples"], "4")
+        said = json.loads(self.run_kadr("info", "--json", "out/ball.0001.png").out)
+        self.assertEqual(said["samples"], "4")
+        self.assertEqual({key: said[key] for key in ("integrator", "bounces", "filter", "motion_tolerance_px", "clamp_direct", "clamp_indirect", "build", "robust",
+                                                     "texture_limit_px", "denoise", "seed", "cull_backfaces", "shutter", "view", "fps")},
+                         {"integrator": "path", "bounces": "2 (diffuse 2, glossy 2, transmission 2)", "filter": "blackman-harris 1.5 px",
+                          "motion_tolerance_px": "0.1", "clamp_direct": "none", "clamp_indirect": "none", "build": "medium", "robust": "no",
+                          "texture_limit_px": "none", "denoise": "none", "seed": "0", "cull_backfaces": "no", "shutter": "0 f to 0.5 f",
+                          "view": "srgb, 0 stops", "fps": "24"})
+        self.assertNotIn("quality", said)
+        self.run_kadr("render", self.shot, "--frames", "1", "--quality", "draft", "--set", "render.texture_limit=512 px")
+        said = json.loads(self.run_kadr("info", "--json", "out/ball.0001.png").out)
+        self.assertEqual((said["quality"], said["texture_limit_px"]), ("draft", "512"))
         self.refused("info", "ball.gltf")
         self.refused("info", "nowhere.png")
 

@@ -19,7 +19,7 @@ TEST(Sweep, StartsWithTheShotAndLeavesItsOwnValuesOut) {
     RenderSpec render;  // 8 bounces, 0.1 px, no clamps
     EXPECT_THAT(ids(plan_sweep(render, {}, kSmall)),
                 ::testing::ElementsAre("shot", "samples-4", "samples-64", "bounces-0", "bounces-1", "bounces-2", "bounces-4", "bounces-32", "integrator-direct",
-                                       "motion_tolerance-0.02px", "motion_tolerance-0.5px", "clamp-10", "clamp-3", "clamp-1"));
+                                       "motion_tolerance-0.02px", "motion_tolerance-0.5px", "clamp-10", "clamp-3", "clamp-1", "denoise-oidn", "build-low", "build-high", "robust-true"));
     render.bounces = {4, 4, 4, 4};
     render.clamp_indirect = 3;
     EXPECT_THAT(ids(plan_sweep(render, {"bounces", "clamp"}, kSmall)),
@@ -34,6 +34,24 @@ TEST(Sweep, ChangesOneSettingAndFixesTheSamples) {
     EXPECT_EQ(sweep.variants[0].set, (Set{{"render.samples", "16"}}));
     EXPECT_EQ(sweep.variants[1].set, (Set{{"render.samples", "4"}}));
     EXPECT_EQ(sweep.variants[3].set, (Set{{"render.motion_tolerance", "0.02 px"}, {"render.samples", "16"}}));
+}
+
+TEST(Sweep, LimitsTexturesDownToAnEighth) {
+    SweepSize size = kSmall;
+    size.largest_texture_px = 1500;
+    size.quick = false;
+    RenderSpec render;
+    EXPECT_THAT(ids(plan_sweep(render, {"texture"}, size)), ::testing::ElementsAre("shot", "texture-1024px", "texture-512px", "texture-256px"));
+    render.texture_limit_px = 512;
+    EXPECT_THAT(ids(plan_sweep(render, {"texture"}, size)), ::testing::ElementsAre("shot", "texture-none", "texture-1024px", "texture-256px"));
+    size.largest_texture_px = 16;
+    EXPECT_EQ(plan_sweep(render, {"texture"}, size).left_out.at(0).reason, "no texture of the shot is larger than 16 px");
+}
+
+TEST(Sweep, OffersTheOtherValueOfASwitch) {
+    RenderSpec render;
+    render.denoise = DenoiserKind::oidn, render.robust = true, render.build = BuildQuality::high;
+    EXPECT_THAT(ids(plan_sweep(render, {"denoise", "robust", "build"}, kSmall)), ::testing::ElementsAre("shot", "denoise-none", "build-low", "build-medium", "robust-false"));
 }
 
 TEST(Sweep, SaysWhatItLeavesOut) {
@@ -55,8 +73,9 @@ std::string refusal(const std::string& list) {
 }
 
 TEST(Sweep, RefusesWhatItCannotVary) {
-    EXPECT_EQ(refusal("samples,bouncs"), "error: --sweep names 'bouncs'\n  expected some of samples, bounces, integrator, motion_tolerance, clamp");
-    EXPECT_EQ(refusal("denoise"), "error: --sweep names 'denoise', which this Kadr has no choice in: there is no denoiser\n  expected some of samples, bounces, integrator, motion_tolerance, clamp");
+    EXPECT_EQ(refusal("samples,bouncs"), "error: --sweep names 'bouncs'\n  expected some of samples, bounces, integrator, motion_tolerance, clamp, denoise, texture, build, robust");
+    EXPECT_EQ(refusal("device"), "error: --sweep names 'device', which this Kadr has no choice in: the CPU is the only device\n"
+                                 "  expected some of samples, bounces, integrator, motion_tolerance, clamp, denoise, texture, build, robust");
     EXPECT_EQ(parse_axes("clamp,samples,clamp"), (std::vector<std::string>{"clamp", "samples"}));
     EXPECT_TRUE(parse_axes("").empty());
 }

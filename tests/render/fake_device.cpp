@@ -7,7 +7,7 @@ namespace {
 class FakeDevice : public Device {
 public:
     std::string name() const override { return "fake (no lanes, 1 threads)"; }
-    void load(const Scene&, const Image*) override {}
+    void load(const Scene&, const Image*, const BuildSettings&) override {}
     void set_frame(const SceneSnapshot& snapshot) override {
         frame_ = snapshot.frame_number;
         seed_ = snapshot.settings.seed;

@@ -54,12 +54,12 @@ void DeformingMeshes::set_previous(const SceneSnapshot& snapshot, std::vector<ke
 
 void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bool cull_backfaces, RTCBuildQuality quality) {
     const std::vector<std::uint32_t>& indices = scene_.geometries[entry.mesh->geometry].indices;
-    entry.structure.reset(rtcNewScene(device_));
+    entry.structure = new_structure(device_, build_);
     entry.triangles.reset(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
     // Embree has a tree of its own for a geometry, and refits it, only in dynamic scenes of low quality; the geometry's
     // quality then says how that tree is built (REFIT: at default quality first).
     if (entry.mesh->key_count == 1) {
-        rtcSetSceneFlags(entry.structure.get(), RTC_SCENE_FLAG_DYNAMIC);
+        rtcSetSceneFlags(entry.structure.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | (build_.robust ? RTC_SCENE_FLAG_ROBUST : 0)));
         rtcSetSceneBuildQuality(entry.structure.get(), RTC_BUILD_QUALITY_LOW);
         rtcSetGeometryBuildQuality(entry.triangles.get(), quality);
     }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/embree/bounds_tree.h"
-#include "device/embree/embree_api.h"
+#include "device/embree/structure.h"
 #include "device/embree/geometry_user.h"
 #include "frame/snapshot.h"
 #include "kernels/scene/scene_view.h"
@@ -45,7 +45,7 @@ StructureUpdate choose_update(const StructureState& state);
 /// what happens to the others.
 class DeformingMeshes {
 public:
-    DeformingMeshes(RTCDevice device, const Scene& scene) : device_(device), scene_(scene) {}
+    DeformingMeshes(RTCDevice device, const Scene& scene, const BuildSettings& build = {}) : device_(device), scene_(scene), build_(build) {}
 
     /// Brings the structures up to date and appends what the kernels fetch to `geometries`, one entry for each pair of
     /// a deformed mesh of the snapshot and a material that it is shown with.
@@ -83,6 +83,7 @@ private:
 
     RTCDevice device_;
     const Scene& scene_;
+    BuildSettings build_;
     std::map<Key, Entry> entries_;
     std::vector<unsigned> number_of_;  ///< [deformed mesh of the snapshot]
     bool bends_ = false;

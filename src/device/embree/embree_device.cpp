@@ -75,9 +75,9 @@ public:
                            width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
     }
 
-    void load(const Scene& scene, const Image* environment) override {
+    void load(const Scene& scene, const Image* environment, const BuildSettings& build) override {
         const auto begin = std::chrono::steady_clock::now();
-        arena_.execute([&] { scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, environment); });
+        arena_.execute([&] { scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, environment, build); });
         statistics_.load_s = seconds_since(begin);
     }
 

@@ -119,8 +119,8 @@ private:
     }
 };
 
-EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment)
-    : device_(device), scene_(scene), upper_(device), deforming_(device, scene) {
+EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment, const BuildSettings& build)
+    : device_(device), scene_(scene), build_(build), upper_(device, build), deforming_(device, scene, build) {
     geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
     packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
@@ -274,7 +274,7 @@ EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geomet
 }
 
 void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened) {
-    flat_.reset(rtcNewScene(device_));
+    flat_ = new_structure(device_, build_);
     baked_.clear();
     flat_users_.clear();
     flat_triangles_ = 0;
@@ -309,7 +309,7 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
 RTCScene EmbreeScene::mesh_scene(unsigned geometry_index, unsigned material) {
     EmbreeSceneHandle& handle = mesh_scenes_[{geometry_index, material}];
     if (handle) return handle.get();
-    handle.reset(rtcNewScene(device_));
+    handle = new_structure(device_, build_);
     ++structures_.built;
     if (!packed_[geometry_index]) {
         packed_[geometry_index] = std::make_unique<PackedGeometry>(scene_.geometries[geometry_index]);

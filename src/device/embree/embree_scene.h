@@ -24,7 +24,7 @@ namespace kadr {
 /// own coordinates. Geometry is built once a shot, instances when they change.
 class EmbreeScene {
 public:
-    EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment);
+    EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment, const BuildSettings& build = {});
     ~EmbreeScene();
 
     void set_frame(const SceneSnapshot& snapshot);
@@ -71,6 +71,7 @@ private:
 
     RTCDevice device_;
     const Scene& scene_;
+    const BuildSettings build_;
     bool cull_backfaces_ = false;
 
     // Tables that the view points into.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "device/embree/embree_api.h"
+#include "device/embree/structure.h"
 #include "kernels/scene/scene_view.h"
 
 namespace kadr {
@@ -15,7 +15,7 @@ namespace kadr {
 /// a new frame sets its mesh and transforms and builds the level over them. 16 bytes an instance beside Embree's own.
 class InstanceLevel {
 public:
-    explicit InstanceLevel(RTCDevice device) : device_(device), level_(rtcNewScene(device)) {}
+    explicit InstanceLevel(RTCDevice device, const BuildSettings& build = {}) : device_(device), level_(new_structure(device, build)) {}
 
     /// How many instances the frame has, shown or not. Those beyond are dropped.
     void resize(std::size_t count);
