@@ -114,6 +114,11 @@ TEST_F(StaticFrames, AreSeenWithTheExposureOfTheirOwnTime) {
     }
 }
 
+TEST_F(StaticFrames, AreSampledAnewWhereAnotherExposureShowsMoreOfTheirNoise) {
+    run("1", "view: { exposure: { keys: { 0 f: 0, 2 f: 2, 3 f: 2, 4 f: 0 } } }\nrender: { samples: { max_error: 0.01 } }");
+    EXPECT_THAT(same_, ElementsAre(-1, -1, -1, 2, 0, 0));
+}
+
 TEST(FrameCache, HoldsTheNewestFramesThatFit) {
     const auto frame = [](std::size_t floats) {
         RenderedFrame result;
