@@ -60,7 +60,10 @@ double SpanPass::to_shot(double local_s) const {
 }
 
 double SpanPass::to_local(double shot_s) const {
-    const double into = std::clamp(shot_s - span->first_s - number * span->seconds(), 0.0, span->seconds());
+    const double into = shot_s - span->first_s - number * span->seconds();
+    // The ends are the keys' own times: first_s + seconds() may be the double before last_s, and the last key would lie beyond.
+    if (into <= 0) return mirrored ? span->last_s : span->first_s;
+    if (into >= span->seconds()) return mirrored ? span->first_s : span->last_s;
     return mirrored ? span->last_s - into : span->first_s + into;
 }
 

@@ -64,6 +64,7 @@ private:
     void open_output();
     void deliver(int frame, int frames_left);
     bool is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const;
+    Hash key_of(const std::vector<SceneSnapshot>& parts, const ViewSpec& view) const;
     FrameCache::Found find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left);
     void render(DeliveryItem& item, const FrameTime& time, int frames_left);
     void load_device();
@@ -158,11 +159,22 @@ ViewSpec RenderJob::view_with_exposure(const FrameTime& time) {
     return view;
 }
 
+/// Of all that a frame's samples depend on. Where they are dealt until the noise on the display is small enough, the exposure
+/// is a part of that: two stops more show four times the noise.
+Hash RenderJob::key_of(const std::vector<SceneSnapshot>& parts, const ViewSpec& view) const {
+    const Hash content = content_key(parts);
+    if (!loaded_->shot().render.max_error) return content;
+    Hasher hasher;
+    hasher.add(content.hex());
+    hasher.add(view.exposure_stops);
+    return hasher.finish();
+}
+
 /// A frame whose inputs are those of an earlier one over the whole shutter is that frame again, else it is rendered.
 FrameCache::Found RenderJob::find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left) {
     const Stopwatch watch;
     const std::vector<SceneSnapshot> parts = make_snapshots(loaded_->bound(), time);
-    const Hash key = content_key(parts);
+    const Hash key = key_of(parts, view);
     if (const auto same = cache_.find(key)) return *same;
     RenderedFrame frame =
         renderer_->render(loaded_->bound(), parts,

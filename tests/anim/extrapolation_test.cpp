@@ -84,6 +84,17 @@ TEST(Extrapolation, ContinuesAnEasedSegmentWithTheEasesSlope) {
     EXPECT_EQ(evaluate(track, 3), 3);
 }
 
+TEST(Extrapolation, EachEndHasTheEaseOfItsOwnSegment) {
+    auto track = numbers({{0, 0}, {1, 1}, {2, 2}, {3, 3}}, Interpolation::linear, Extrapolation::continued, Extrapolation::continued);
+    track.keys[0].ease = Ease{0.5, 0.25, 0.75, 0.25};  // slope 1/2 at its start, 3 at its end
+    track.keys[1].ease = Ease{0.5, 0.05, 0.5, 0.1};    // that of neither
+    track.keys[2].ease = Ease{0.25, 1, 0.5, 0.25};     // 4 and 3/2
+    EXPECT_DOUBLE_EQ(evaluate(track, -2), -1);
+    EXPECT_DOUBLE_EQ(evaluate(track, 5), 3 + 2 * 1.5);
+    EXPECT_DOUBLE_EQ(travel_of(track, -3, -1), 1);
+    EXPECT_DOUBLE_EQ(travel_of(track, 4, 6), 3);
+}
+
 TEST(Extrapolation, RotationsTurnOn) {
     const auto linear = turning({{0, 0}, {1, 40}, {2, 100}}, Extrapolation::continued, Extrapolation::continued);
     EXPECT_NEAR(degrees_of(evaluate(linear, 5)), 100 + 3 * 60 - 360, 1e-12);
@@ -130,6 +141,18 @@ TEST(Extrapolation, KeysComeBackInEveryPass) {
     EXPECT_THAT(key_times(saw(Extrapolation::repeat, Extrapolation::repeat), -2.5, 5.5), ElementsAre(-2, -1, 1, 2, 4, 5));
     EXPECT_THAT(key_times(saw(Extrapolation::pingpong, Extrapolation::pingpong), -1, 8.5), ElementsAre(0, 1, 2, 4, 6, 7, 8));
     EXPECT_THAT(key_times(saw(Extrapolation::hold, Extrapolation::continued), -1, 8.5), ElementsAre(1, 2, 4));
+}
+
+TEST(Extrapolation, EachEndLoopsInItsOwnWay) {
+    const auto back_first = saw(Extrapolation::pingpong, Extrapolation::repeat), back_last = saw(Extrapolation::repeat, Extrapolation::pingpong);
+    EXPECT_EQ(evaluate(back_first, 0), 20);
+    EXPECT_EQ(evaluate(back_first, 5), 20);
+    EXPECT_EQ(evaluate(back_last, -1), 20);
+    EXPECT_EQ(evaluate(back_last, 6), 20);
+    EXPECT_THAT(key_times(back_first, -2.5, 7.5), ElementsAre(-2, 0, 1, 2, 4, 5, 7));
+    EXPECT_THAT(key_times(back_last, -2.5, 7.5), ElementsAre(-2, -1, 1, 2, 4, 6, 7));
+    EXPECT_THAT(discontinuities(back_first, -6, 8), ElementsAre(4, 7));
+    EXPECT_THAT(discontinuities(back_last, -6, 8), ElementsAre(-5, -2, 1));
 }
 
 TEST(Extrapolation, NeverListsWithoutBound) {

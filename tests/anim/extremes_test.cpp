@@ -116,6 +116,15 @@ TEST(TrackExtremes, RepeatedPassesHaveTheKeyedOnesExtremesAtTheirOwnTimes) {
     EXPECT_NEAR(extremes_of(track_of(keys, Interpolation::smooth, Extrapolation::hold, Extrapolation::repeat), 2.9, 1e6).greatest.value, 1.125, kRounding);
 }
 
+TEST(TrackExtremes, ALoopReachesItsLastKeyWhateverItsSecondsAreRoundedTo) {
+    constexpr double kFirst = -3, kLast = 1.1;
+    ASSERT_LT(kFirst + (kLast - kFirst), kLast);  // one double less
+    const std::vector<Key<double>> keys{key(kFirst, 0), key(-1, 1), key(kLast, 5)};
+    const Extremes next = extremes_of(track_of(keys, Interpolation::linear, Extrapolation::hold, Extrapolation::repeat), 3.5, 7);
+    EXPECT_EQ(next.greatest.value, 5);
+    EXPECT_NEAR(next.greatest.time_s, 5.2, kRounding);
+}
+
 TEST(TrackExtremes, OnlySomeTracksCanLeaveTheirKeys) {
     const std::vector<Key<double>> keys{key(0, 0), key(1, 1)}, swinging{key(0, 0, Ease{0.3, -0.5, 0.7, 1}), key(1, 1)};
     EXPECT_FALSE(may_leave_keys(Track<double>(3.0)));

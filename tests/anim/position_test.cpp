@@ -3,6 +3,7 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -92,6 +93,45 @@ TEST(Path, HasNoDirectionWhereItTurnsBack) {
     EXPECT_LT(glm::distance(path.position(0.75), glm::dvec3(0.5, 0, 0)), 1e-9);
 }
 
+/// The spline between b and c by repeated interpolation over centripetal knots, which has nothing in common with tangents.
+/// Source: Barry & Goldman 1988, "A recursive evaluation algorithm for a class of Catmull-Rom splines".
+glm::dvec3 pyramid(const std::array<glm::dvec3, 4>& p, double u) {
+    double knot[4] = {0, 0, 0, 0};
+    for (int i = 1; i < 4; ++i) knot[i] = knot[i - 1] + std::sqrt(glm::distance(p[i - 1], p[i]));
+    const double t = std::lerp(knot[1], knot[2], u);
+    const auto between = [&](const glm::dvec3& a, const glm::dvec3& b, int from, int to) { return glm::mix(a, b, (t - knot[from]) / (knot[to] - knot[from])); };
+    const glm::dvec3 a0 = between(p[0], p[1], 0, 1), a1 = between(p[1], p[2], 1, 2), a2 = between(p[2], p[3], 2, 3);
+    return between(between(a0, a1, 0, 2), between(a1, a2, 1, 3), 1, 2);
+}
+
+/// Compares a path with the curve of its segments, a hundred places in each: chords give their lengths.
+void expect_pyramids(const Path& path, const std::vector<std::array<glm::dvec3, 4>>& segments) {
+    constexpr int kChords = 20000, kEvery = 200;
+    std::vector<std::pair<double, glm::dvec3>> places;
+    double length = 0;
+    for (const auto& segment : segments)
+        for (int i = 0; i < kChords; ++i) {
+            const glm::dvec3 here = pyramid(segment, i / static_cast<double>(kChords)), next = pyramid(segment, (i + 1.0) / kChords);
+            if (i % kEvery == 0) places.emplace_back(length, here);
+            length += glm::distance(here, next);
+        }
+    // Chords are short by (length * curvature)^2 / 24: 1 mm at radii above 1 cm, in few places.
+    EXPECT_NEAR(path.length(), length, 1e-6 * length);
+    for (const auto& [before, wanted] : places) EXPECT_LT(glm::distance(path.position(before / length), wanted), 3e-6 * length);
+}
+
+TEST(Path, IsTheCentripetalSplineOfThePyramid) {
+    const std::vector<glm::dvec3> points{{0, 0, 0}, {1, 2, 0}, {5, 2, 1}, {5, 2.5, 1}, {2, -4, 6}};
+    const std::size_t n = points.size();
+    std::vector<std::array<glm::dvec3, 4>> ring, open;
+    for (std::size_t i = 0; i < n; ++i) ring.push_back({points[(i + n - 1) % n], points[i], points[(i + 1) % n], points[(i + 2) % n]});
+    expect_pyramids(Path(points, true), ring);
+    open.assign(ring.begin(), ring.end() - 1);
+    open.front()[0] = 2.0 * points[0] - points[1];  // an open path leaves its ends straight: as if its neighbour were reflected
+    open.back()[3] = 2.0 * points[n - 1] - points[n - 2];
+    expect_pyramids(Path(points, false), open);
+}
+
 RC_GTEST_PROP(PathProperty, EqualStepsAreEqualDistances, ()) {
     std::vector<glm::dvec3> points;
     // Around a circle, each point off it, so that no corner is sharp: a chord across one says nothing about the curve.
@@ -143,6 +183,31 @@ TEST(Position, WhirlingDoesNotHideBetweenSamples) {
     EXPECT_EQ(key_times(track, 0, 0.04).size(), 63u);  // four turns
 }
 
+TEST(Position, AnOrbitHasTheKeysAndJumpsOfAllItsTracks) {
+    const auto keyed = [](double time_s, auto a, auto b) {
+        Track<decltype(a)> track;
+        track.keys = {{0, a, {}, {}, {}}, {time_s, b, {}, {}, {}}, {9, a, {}, {}, {}}};
+        return track;
+    };
+    PositionTrack track;
+    track.orbit = OrbitMotion{keyed(1, glm::dvec3(0), glm::dvec3(1)), keyed(2, 1.0, 2.0), keyed(3, 0.0, 1.0), keyed(4, 0.0, 0.0), 0};
+    EXPECT_THAT(key_times(track, 0.5, 5), ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(discontinuities(track, 0.5, 5), IsEmpty());
+    track.orbit->turns.keys[1].value = 1;  // a step to the same value is none
+    track.orbit->around.interpolation = Interpolation::step;
+    track.orbit->radius_m.interpolation = track.orbit->height_m.interpolation = track.orbit->turns.interpolation = Interpolation::step;
+    EXPECT_THAT(discontinuities(track, 0.5, 5), ElementsAre(1, 2, 3, 4));
+    for (const int moving : {0, 1, 2, 3}) {
+        PositionTrack one;
+        one.orbit = OrbitMotion{};
+        if (moving == 0) one.orbit->around = track.orbit->around;
+        if (moving == 1) one.orbit->radius_m = track.orbit->radius_m;
+        if (moving == 2) one.orbit->height_m = track.orbit->height_m;
+        if (moving == 3) one.orbit->turns = track.orbit->turns;
+        EXPECT_TRUE(varies(one)) << moving;
+    }
+}
+
 TEST(Position, TurnsIntoItsPath) {
     TransformTrack transform;
     transform.translate = along(circle(256, 2), true, ramp(0, 1, 1));
@@ -153,6 +218,17 @@ TEST(Position, TurnsIntoItsPath) {
     EXPECT_NEAR(turn_of(transform, 0, 1), 2 * kPi, 1e-2);
     transform.rotate.orientation = Track<glm::dquat>(glm::angleAxis(kPi / 2, glm::dvec3(0, 1, 0)));  // first about its own axes
     EXPECT_LT(glm::distance(glm::dvec3(evaluate(transform, 0.25)[0]), glm::dvec3(1, 0, 0)), 1e-4);
+}
+
+TEST(Position, TurnsAlongAfterItsOwnTurn) {
+    TransformTrack transform;
+    transform.translate = along({{0, 0, 0}, {-5, 0, 0}}, false, ramp(0, 1, 1));
+    transform.rotate.orientation = Track<glm::dquat>(glm::angleAxis(kPi / 2, glm::dvec3(1, 0, 0)));
+    // Its own turn lays +z down to -y, which a turn about y leaves there; the other way round -z would be up, and so on.
+    const glm::dmat4 m = evaluate(transform, 0.5);
+    EXPECT_LT(glm::distance(glm::dvec3(m[2]), glm::dvec3(0, -1, 0)), 1e-14);
+    EXPECT_LT(glm::distance(glm::dvec3(m[1]), glm::dvec3(-1, 0, 0)), 1e-14);  // +y to +z, which leads along the path
+    EXPECT_LT(glm::distance(glm::dvec3(m[0]), glm::dvec3(0, 0, 1)), 1e-14);
 }
 
 TEST(Position, SaysWhereNothingIsUp) {
@@ -228,6 +304,38 @@ TEST(Shake, HasNothingAboveItsFrequency) {
         EXPECT_LT(above, 1e-7 * inside);
         for (const double band : bands) EXPECT_GT(band, 1e-3 * inside);
     }
+}
+
+TEST(Shake, NoAxisAndNoChannelFollowsAnother) {
+    constexpr int kSamples = 20000, kSignals = 6;
+    double products[kSignals][kSignals] = {};
+    Shake shake;
+    shake.amplitude_m = shake.angle_rad = glm::dvec3(1);
+    shake.frequency_hz = 5, shake.seed = 3;
+    for (int i = 0; i < kSamples; ++i) {
+        const ShakeOffset at = evaluate(shake, i * 0.113);
+        const double here[kSignals] = {at.offset_m.x, at.offset_m.y, at.offset_m.z, at.turn_rad.x, at.turn_rad.y, at.turn_rad.z};
+        for (int a = 0; a < kSignals; ++a)
+            for (int b = 0; b < kSignals; ++b) products[a][b] += here[a] * here[b];
+    }
+    // Sinusoids of other frequencies: their products average out by 1 / (2 pi * difference * 2260 s), 0.01 for a difference of 7 mHz.
+    for (int a = 0; a < kSignals; ++a)
+        for (int b = 0; b < a; ++b) EXPECT_LT(std::abs(products[a][b]) / std::sqrt(products[a][a] * products[b][b]), 0.03) << a << ' ' << b;
+}
+
+TEST(Shake, HasTheKeysAndJumpsOfBothItsTracks) {
+    const auto keyed = [](double time_s) {
+        Track<glm::dvec3> track;
+        track.keys = {{0, glm::dvec3(0), {}, {}, {}}, {time_s, glm::dvec3(1), {}, {}, {}}, {9, glm::dvec3(0), {}, {}, {}}};
+        return track;
+    };
+    Shake shake;
+    shake.amplitude_m = keyed(1), shake.angle_rad = keyed(2);
+    shake.frequency_hz = 0.01;  // one part: no times of its own
+    EXPECT_THAT(key_times(shake, 0.5, 5), ElementsAre(1, 2));
+    EXPECT_THAT(discontinuities(shake, 0.5, 5), IsEmpty());
+    shake.amplitude_m.interpolation = shake.angle_rad.interpolation = Interpolation::step;
+    EXPECT_THAT(discontinuities(shake, 0.5, 5), ElementsAre(1, 2));
 }
 
 TEST(Shake, FollowsItsAmplitudesAndAsksForEnoughSamples) {

@@ -192,6 +192,9 @@ TEST(StructureUpdate, FollowsTheGrowthOfTheTree) {
     EXPECT_EQ(chosen(1, false, 1, 1), StructureUpdate::refit);
     EXPECT_EQ(chosen(1, false, 1, kMostGrowth), StructureUpdate::refit);
     EXPECT_EQ(chosen(1, false, 1, kMostGrowth + 1e-9), StructureUpdate::build_low);
+    // The figure itself, which the measured speed of rays stands behind.
+    EXPECT_EQ(chosen(1, false, 1, 1.05), StructureUpdate::refit);
+    EXPECT_EQ(chosen(1, false, 1, 1.0501), StructureUpdate::build_low);
     EXPECT_EQ(chosen(1, true, 1, 1.5), StructureUpdate::build_low);  // still as fast
     EXPECT_EQ(chosen(1, true, 1, 1.01), StructureUpdate::build);      // calmed down: Embree cannot refit the low one
     EXPECT_EQ(chosen(1, false, 1, NAN), StructureUpdate::build_low);

@@ -95,6 +95,51 @@ TEST(InstanceLevel, FramesOfThisTestDiffer) {  // or the test above would prove 
     for (std::size_t i = 0; i + 1 < f.snapshots.size(); ++i) EXPECT_GT(difference(f.last_of({i}), f.last_of({i + 1})), 0.5) << i;
 }
 
+/// A square that never moves, at a place of its own.
+SceneSnapshot still_square(std::uint32_t id, double x, bool visible = true) {
+    SmallScene scene;
+    scene.add_moving(0, {}, {place({x, 0, 0}, 0.3)}, true);
+    scene.snapshot.instances.edit_back().material = 0;
+    scene.snapshot.instances.edit_back().id = id;
+    scene.snapshot.instances.edit_back().mask = visible ? 0xffffffffu : 0;
+    scene.snapshot.settings.max_bounces = 0;
+    scene.snapshot.geometry_key = 1 + 2 * id + (visible ? 1 : 0);
+    return scene.snapshot;
+}
+
+TEST(InstanceLevel, StillInstancesAreToldApartByTheirIds) {
+    // As many as before, and all of them still: only their ids say that they are others.
+    Frames f;
+    f.snapshots = {still_square(0, -0.5), still_square(1, 0.5)};
+    EXPECT_GT(difference(f.last_of({0}), f.last_of({1})), 0.5);
+    EXPECT_EQ(difference(f.last_of({0, 1}), f.last_of({1})), 0);
+}
+
+TEST(InstanceLevel, WhatIsHiddenNeitherShowsNorShines) {
+    Frames f;
+    f.snapshots = {still_square(0, 0), still_square(0, 0, false)};
+    const auto brightest = [](const Image& image) {
+        float most = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) most = std::max(most, image.at(x, y, 0));
+        return most;
+    };
+    EXPECT_EQ(brightest(f.last_of({0})), 1);
+    EXPECT_EQ(brightest(f.last_of({1})), 0);
+    EXPECT_EQ(brightest(f.last_of({0, 1})), 0);
+    // Nor does it light a wall that the camera sees.
+    for (const bool fixed : {false, true})
+        for (const bool visible : {false, true}) {
+            SmallScene room;
+            room.snapshot.settings.max_bounces = 1;
+            room.add_instance(room.add_mesh(unit_square()), material({0.8f, 0.8f, 0.8f}, 0, 1), place({0, 0, 0}));
+            room.add_instance(0, glowing({5, 5, 5}), glm::rotate(place({0, 0, 8}), kPi, glm::dvec3(0, 1, 0)), fixed);
+            room.snapshot.instances.edit_back().mask = visible ? 0xffffffffu : 0;
+            room.add_instance(0, material({0, 0, 0}, 0, 1), place({50, 0, 0}), false);  // far away, so that the mesh is there in any case
+            EXPECT_EQ(room.render(4).mean(0) > 0, visible) << fixed;
+        }
+}
+
 TEST(InstanceLevel, CountsWhatIsShown) {
     const Frames f = varied_frames();
     std::uint64_t count = 0;

@@ -121,6 +121,49 @@ TEST(Environments, ThatTurnAreFollowedToHalfADegree) {
     EXPECT_EQ(stage.snapshots().size(), 4u);
 }
 
+TEST(Environments, OfAnImageHaveItsStrengthAloneAndTheTurnOfTheMiddle) {
+    Stage stage;
+    stage.shot.environment.given = true;
+    stage.shot.environment.image = "sky.exr";
+    stage.shot.environment.color = Track<glm::dvec3>(glm::dvec3(0.1, 0.2, 0.3));  // of an environment without an image
+    stage.shot.environment.strength = track<double>({{0, 2}, {1, 4}});
+    stage.shot.environment.rotate_rad = track<double>({{0, 1}, {1, 1.008}});  // less than half a degree
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 1u);
+    const EnvironmentSnapshot& sky = parts[0].environment;
+    EXPECT_EQ(sky.image, "sky.exr");
+    for (const float channel : {sky.radiance.x, sky.radiance.y, sky.radiance.z}) EXPECT_FLOAT_EQ(channel, 3);
+    EXPECT_FLOAT_EQ(sky.rotate_rad, 1.004f);
+}
+
+TEST(Environments, ThatJumpSplitTheShutterWhicheverTrackDoes) {
+    const auto jump = [](auto a, auto b) { return track<decltype(a)>({{0, a}, {0.25, b}}, Interpolation::step); };
+    for (const int which : {0, 1, 2}) {
+        Stage stage;
+        EnvironmentSpec& sky = stage.shot.environment;
+        sky.given = true;
+        sky.color = Track<glm::dvec3>(glm::dvec3(1));
+        if (which == 2) sky.image = "sky.exr";
+        if (which == 0) sky.color = jump(glm::dvec3(1), glm::dvec3(2));
+        if (which == 1) sky.strength = jump(1.0, 2.0);
+        if (which == 2) sky.rotate_rad = jump(0.0, 2.0);
+        const std::vector<SceneSnapshot> parts = stage.snapshots();
+        ASSERT_EQ(parts.size(), 2u) << which;
+        EXPECT_EQ(parts[0].close_s, 0.25) << which;
+        EXPECT_FLOAT_EQ(which < 2 ? parts[1].environment.radiance.y : parts[1].environment.rotate_rad, 2) << which;
+    }
+}
+
+TEST(Pointers, HoldTheInnerConeAtTheOuterOne) {
+    Stage stage;
+    add_lamp(stage);  // 0.2 and 0.4
+    drive(stage, Property::light_inner, 0, track<double>({{0, 0.6}}));
+    const kernels::Light& light = stage.snapshot().light_keys.front();
+    EXPECT_FLOAT_EQ(light.inner_rad, 0.4f);
+    EXPECT_FLOAT_EQ(light.cos_inner, std::cos(0.4f));
+    EXPECT_FLOAT_EQ(light.outer_rad, 0.4f);
+}
+
 TEST(Pointers, DriveLights) {
     Stage stage;
     add_lamp(stage);
@@ -210,6 +253,60 @@ TEST(Pointers, DriveMaterials) {
     const SceneSnapshot own = stage.snapshot();
     EXPECT_EQ(own.materials.at(own.instances.at(0).material).metallic, 0.75f);
     EXPECT_EQ(own.materials.at(own.instances.at(0).material).emission.x, 3);
+}
+
+/// The stage's only cube, with a texture in each slot but that of occlusion, which no kernel reads.
+struct Textured : Stage {
+    Textured() {
+        add_node("cube");
+        scene.material_names = {"Paint"};
+        scene.material_sources.resize(1);
+        scene.material_sources[0].index = 0;
+        scene.files[0].material_count = 1;
+        kernels::Material& paint = scene.materials[0];
+        for (kernels::TextureSlot* slot : {&paint.base_color_texture, &paint.metallic_roughness_texture, &paint.normal_texture, &paint.emissive_texture}) slot->texture = 0;
+    }
+    template <class T>
+    void move(Property property, TextureUse use, Track<T> values) {
+        drive(0, property, 0, std::move(values));
+        scene.clips[0].properties.back().use = use;
+    }
+};
+
+TEST(MovingTextures, AreFollowedToPartsOfTheirSize) {
+    using enum TextureUse;
+    for (const TextureUse use : {base_color, metallic_roughness, normal, emissive}) {
+        Textured shifted, still;
+        shifted.move(Property::texture_offset, use, track<glm::dvec2>({{0, {0, 0}}, {1, {0, 4.0 / 256}}}));
+        EXPECT_EQ(shifted.snapshots().size(), 4u) << static_cast<int>(use);
+        still.move(Property::texture_offset, use, track<glm::dvec2>({{0, {0, 0}}, {1, {0, 0.9 / 256}}}));
+        EXPECT_EQ(still.snapshots().size(), 1u) << static_cast<int>(use);
+    }
+    Textured turned, grown;
+    turned.move(Property::texture_rotation, base_color, track<double>({{0, 0}, {1, 2.0 / 256}}));
+    EXPECT_EQ(turned.snapshots().size(), 2u);
+    grown.move(Property::texture_scale, base_color, track<glm::dvec2>({{0, {1, 1}}, {1, {1 + 2.0 / 256, 1}}}));
+    EXPECT_EQ(grown.snapshots().size(), 2u);
+    grown.scene.materials[0].base_color_texture.texture = -1;  // nothing is seen of it
+    EXPECT_EQ(grown.snapshots().size(), 1u);
+}
+
+TEST(MovingTextures, MoveTheirOwnTextureAlone) {
+    using enum TextureUse;
+    Textured stage;
+    stage.move(Property::texture_offset, normal, track<glm::dvec2>({{0, {0.25, 0.5}}}));
+    stage.move(Property::texture_offset, emissive, track<glm::dvec2>({{0, {0.125, 0.75}}}));
+    stage.move(Property::texture_scale, metallic_roughness, track<glm::dvec2>({{0, {2, 3}}}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    const kernels::Material& m = snapshot.materials.at(snapshot.instances.at(0).material);
+    EXPECT_EQ(m.base_color_texture.m02, 0);
+    EXPECT_EQ(m.base_color_texture.m00, 1);
+    EXPECT_EQ(m.normal_texture.m02, 0.25f);
+    EXPECT_EQ(m.normal_texture.m12, 0.5f);
+    EXPECT_EQ(m.emissive_texture.m02, 0.125f);
+    EXPECT_EQ(m.emissive_texture.m12, 0.75f);
+    EXPECT_EQ(m.metallic_roughness_texture.m00, 2);
+    EXPECT_EQ(m.metallic_roughness_texture.m11, 3);
 }
 
 TEST(Pointers, OfTwoClipsTheLastWins) {

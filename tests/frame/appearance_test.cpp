@@ -228,6 +228,46 @@ TEST(Visibility, OfTheShotsNodesReplacesWhatTheFileSays) {
     EXPECT_EQ(mask(1, 1), 0xffffffffu);
 }
 
+TEST(Visibility, OfASceneThatIsOffStaysOff) {
+    PaintStage stage;
+    stage.scene.lights.emplace_back();
+    stage.node(0).light = 0;
+    EXPECT_EQ(stage.snapshot().lights.size(), 1u);
+    stage.shot.scenes[0].visible = SwitchTrack(0.0);
+    const SceneSnapshot snapshot = stage.snapshot();
+    for (const SnapshotInstance& instance : snapshot.instances) EXPECT_EQ(instance.mask, 0u);
+    EXPECT_TRUE(snapshot.lights.empty());
+}
+
+TEST(Visibility, ASwitchBelowAnotherNeedsBoth) {
+    PaintStage stage;
+    stage.add_node("child", 0);
+    NodeOverride above, below;
+    above.name = "painted";
+    above.visible = track<double>({{0, 1}, {0.5, 0}}, Interpolation::step);
+    below.name = "child";
+    below.visible = track<double>({{0, 0}, {0.25, 1}}, Interpolation::step);
+    stage.shot.scenes[0].nodes = {above, below};
+    for (const double offset : {0.0, 3.0}) {
+        if (offset != 0) {  // copies ask every switch above in their own time; that of the node "glowing" follows a clip
+            stage.drive(0, Property::node_visible, 1, track<double>({{0, 1}, {100, 0}}, Interpolation::step));
+            stage.shot.scenes[0].instances.emplace().list = {{{0, 0, 0}, {1, 0, 0, 0}, glm::dvec3(1), offset}};
+        }
+        const std::vector<SceneSnapshot> parts = stage.snapshots();
+        ASSERT_EQ(parts.size(), 3u);
+        const auto shown = [&](std::size_t part, std::uint32_t id) {
+            for (const SnapshotInstance& instance : parts[part].instances)
+                if (instance.id == id) return instance.mask != 0;
+            ADD_FAILURE() << "no instance " << id;
+            return false;
+        };
+        for (std::size_t part = 0; part < 3; ++part) {
+            EXPECT_EQ(shown(part, 0), part < 2) << part << ' ' << offset;
+            EXPECT_EQ(shown(part, 2), part == 1) << part << ' ' << offset;
+        }
+    }
+}
+
 TEST(Visibility, OfClipsFollowsTheClipsTime) {
     PaintStage stage;
     stage.animate(0);

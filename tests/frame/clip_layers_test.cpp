@@ -173,6 +173,19 @@ TEST(MeanRotation, OfTheSameIsTheSame) {
     EXPECT_LT(angle_between(mean_rotation(mix), turn(40)), 1e-14);
 }
 
+// A rotation half a turn from the middle of the others is on neither side of it: the heaviest of them says which one.
+TEST(MeanRotation, HalfATurnFromTheMiddleDependsOnNoSign) {
+    const glm::dquat a = turn(30), b = turn(-90), c = turn(180);
+    for (const double more : {-1e-12, 0.0, 1e-12})  // moves the middle, 0 degrees, by less than counts
+        for (int signs = 0; signs < 8; ++signs) {
+            std::vector<WeightedRotation> mix{{1, signs & 1 ? -a : a}, {0.5 + more, signs & 2 ? -b : b}, {0.25, signs & 4 ? -c : c}};
+            for (int order = 0; order < 3; ++order) {
+                EXPECT_NEAR(glm::degrees(angle_between(mean_rotation(mix), turn((30 - 0.5 * 90 + 0.25 * 180) / 1.75))), 0, 1e-9) << more << ' ' << signs << ' ' << order;
+                std::rotate(mix.begin(), mix.begin() + 1, mix.end());
+            }
+        }
+}
+
 // ---- Layers of a scene ----
 
 /// A node "arm" at (1, 2, 3), turned by 10 degrees and twice as large, and clips "a" and "b", two seconds each, that take

@@ -5,6 +5,7 @@
 
 #include "frame/bindings.h"
 #include "frame/deform.h"
+#include "frame/key_grid.h"
 #include "stage.h"
 
 namespace kadr {
@@ -112,6 +113,91 @@ TEST(Deformation, KeepsItsPrecisionFarAway) {
     EXPECT_LT(glm::distance(world_of(snapshot, 16, 1), wanted), 1e-6);
 }
 
+/// The bar with a node between its joints, which is none, and joints that were not bound where they stand.
+struct ChainStage : BarStage {
+    int between;
+    glm::dmat4 bind = glm::rotate(glm::translate(glm::dmat4(1), {0.3, -0.1, 0.2}), 0.4, glm::dvec3(0, 1, 0));
+
+    ChainStage() {
+        between = add_node("between", root, false);
+        node(root).children = {between};
+        node(between).children = {tip};
+        node(tip).parent = between;
+        node(root).translation = {0.5, 0.25, 0};
+        node(root).rotation = turn(20);
+        node(between).translation = {0.2, 0, 0};
+        node(between).rotation = turn(50, {1, 0, 0});
+        node(tip).translation = {0, 0.1, 0};
+        node(tip).rotation = turn(-30, {0, 1, 1});
+        scene.skins[0].inverse_bind[1] = bind;
+    }
+    glm::dmat4 local(int index) {
+        const Node& n = node(index);
+        return glm::translate(glm::dmat4(1), n.translation) * glm::mat4_cast(n.rotation);
+    }
+    void expect_places() {
+        const SceneSnapshot snapshot = snapshot_of_now();
+        const kernels::Vec3f end = scene.geometries[0].positions[17], start = scene.geometries[0].positions[0];
+        const glm::dvec4 wanted_end = local(root) * local(between) * local(tip) * bind * glm::dvec4(end.x, end.y, end.z, 1);
+        EXPECT_LT(glm::distance(world_of(snapshot, 17, 0), glm::dvec3(wanted_end)), 1e-6);
+        EXPECT_LT(glm::distance(world_of(snapshot, 0, 0), glm::dvec3(local(root) * glm::dvec4(start.x, start.y, start.z, 1))), 1e-6);
+    }
+    SceneSnapshot snapshot_of_now() const { return snapshot(); }
+};
+
+TEST(Deformation, GoesFromTheBindingThroughAllNodesUpToTheRoot) {
+    ChainStage stage;
+    stage.expect_places();
+    // The joints may be listed in any order: the tip before the root that it hangs from.
+    std::swap(stage.scene.skins[0].joints[0], stage.scene.skins[0].joints[1]);
+    std::swap(stage.scene.skins[0].inverse_bind[0], stage.scene.skins[0].inverse_bind[1]);
+    for (std::uint16_t& joint : stage.scene.geometries[0].skin.joints) joint = joint == 0 ? 1 : 0;
+    stage.expect_places();
+}
+
+TEST(Deformation, KeysOfAllNodesOfTheSkeletonAreCorners) {
+    for (const bool joint : {false, true}) {
+        ChainStage stage;
+        stage.animate(joint ? stage.tip : stage.between).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {0.2, {0.5, 0, 0}}, {0.6, {0, 0.3, 0}}, {1, {0, 0, 0}}});
+        const SceneSnapshot snapshot = stage.snapshot();
+        EXPECT_EQ(snapshot.deformed.at(0)->key_count, 6u) << joint;  // fifths
+        EXPECT_LT(snapshot.deformed[0]->error_px, 1e-3) << joint;    // float vertices on 720 lines
+    }
+}
+
+TEST(Deformation, IsLeftOutWithAnInstanceThatIsNowhereAndHiddenWithOneThatIsOff) {
+    BarStage stage;
+    stage.turn_tip(30);
+    stage.node(stage.mesh).visible = false;
+    const SceneSnapshot off = stage.snapshot();
+    ASSERT_EQ(off.instances.size(), 1u);
+    EXPECT_EQ(off.instances[0].mask, 0u);
+    stage.node(stage.mesh).visible = true;
+    EXPECT_NE(stage.snapshot().instances[0].mask, 0u);
+    stage.node(stage.root).scale = glm::dvec3(0);
+    const SceneSnapshot nowhere = stage.snapshot();
+    EXPECT_TRUE(nowhere.instances.empty());
+    EXPECT_TRUE(nowhere.deformed.empty());
+    EXPECT_EQ(nowhere.motion.max_error_px, 0);
+}
+
+TEST(Deformation, SplitsTheShutterWhereItsVerticesAloneStray) {
+    // Corners at odd times that no even grid of 128 steps meets; the instance itself stands still.
+    BarStage stage;
+    stage.animate(stage.tip).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {0.2371, {2, 0, 0}}, {0.6113, {-2, 1, 0}}, {1, {0, 0, 0}}});
+    stage.shot.render.samples = 1;  // too few to split the shutter for
+    const double whole_px = stage.snapshot().deformed.at(0)->error_px;
+    const double enough_px = kDeformationShare * kMotionMargin * stage.shot.render.motion_tolerance_px;
+    EXPECT_GT(whole_px, enough_px);
+    stage.shot.render.samples = 64;
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    EXPECT_GT(parts.size(), 1u);
+    double weights = 0;
+    for (const SceneSnapshot& part : parts) weights += part.weight;
+    EXPECT_NEAR(weights, 1, 1e-12);
+    EXPECT_LT(parts.front().deformed.at(0)->error_px, whole_px);
+}
+
 TEST(Deformation, DualQuaternionsKeepTheToleranceToo) {
     BarStage stage;
     stage.turn_tip(120);
@@ -188,6 +274,18 @@ TEST(Deformation, TellsWhereVerticesWereAFrameAgo) {
     EXPECT_LT(glm::distance(world, glm::dvec3(0, 1, 0)), 1e-6);
 }
 
+TEST(Deformation, MixesTheFilesOwnWeightsWithWhatItsLayersLeave) {
+    DropStage stage;
+    stage.scene.geometries[0].targets.push_back({{0}, {{1, 0, 0}}, {}, {}});
+    stage.node(stage.drop).weights = {0.25, 0.75};
+    stage.animate(stage.drop).weights = {Track<double>(1.0)};  // the second weight is not the clip's
+    stage.shot.scenes[0].layers[0].weight = Track<double>(0.5);
+    EXPECT_EQ(stage.bind().bindings().morphs.weights(stage.drop, 0, 0), (std::vector<double>{0.625, 0.75}));
+    const SceneSnapshot snapshot = stage.snapshot();
+    EXPECT_LT(glm::distance(world_of(snapshot, 2, 0), glm::dvec3(0, 1 + 2 * 0.625, 0)), 1e-6);
+    EXPECT_LT(glm::distance(world_of(snapshot, 0, 0), glm::dvec3(-1 + 0.75, -1, 0)), 1e-6);
+}
+
 NodeOverride weights_of(std::string node, std::vector<Track<double>> weights) {
     NodeOverride result;
     result.name = std::move(node);
@@ -205,6 +303,19 @@ TEST(Deformation, WeightsOfTheShotWinOverClipsAndBlur) {
     EXPECT_EQ(snapshot.deformed[0]->key_count, 3u);  // a key of the vertices for each of the weights'
     EXPECT_LT(glm::distance(world_of(snapshot, 2, 0.25), glm::dvec3(0, 1.25, 0)), 1e-6);
     EXPECT_LT(glm::distance(world_of(snapshot, 2, 0.75), glm::dvec3(0, 2.25, 0)), 1e-6);
+}
+
+TEST(Deformation, KeysOfWeightsAreCornersOfTheVertices) {
+    const Track<double> fifths = track<double>({{0, 0}, {0.2, 1}, {0.6, 0}, {1, 0.5}});
+    for (const bool by_shot : {false, true}) {
+        DropStage stage;
+        if (by_shot) stage.shot.scenes[0].nodes = {weights_of("drop", {fifths})};
+        else stage.animate(stage.drop).weights = {fifths};
+        const SceneSnapshot snapshot = stage.snapshot();
+        EXPECT_EQ(snapshot.deformed.at(0)->key_count, 6u) << by_shot;  // fifths: two, four, eight parts would miss them
+        EXPECT_LT(snapshot.deformed[0]->error_px, 1e-4) << by_shot;    // float vertices on 720 lines
+        EXPECT_LT(glm::distance(world_of(snapshot, 2, 0.2), glm::dvec3(0, 3, 0)), 1e-6) << by_shot;
+    }
 }
 
 TEST(Deformation, ConstantWeightsOfTheShotReplaceTheFiles) {

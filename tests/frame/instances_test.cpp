@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -88,6 +89,47 @@ TEST(Instances, RandomVariationIsAFunctionOfSeedAndNumber) {
     EXPECT_GT(most, 1.9);
     spec.seed = 1;
     EXPECT_NE(place_copies(spec), places);
+}
+
+TEST(Instances, JitterIsAPartOfTheSpacingOfEachAxis) {
+    const glm::dvec3 spacing(1, 4, 0.25);
+    InstancesSpec spec = grid_of({10, 10, 10}, spacing, 0.5);
+    spec.random_scale = {1, 2};
+    spec.random_offset_s = {0, 1};
+    spec.random_yaw_rad = 1;
+    const std::vector<Placement> plain = place_copies(grid_of({10, 10, 10}, spacing)), places = place_copies(spec);
+    using Numbers = std::array<double, 6>;
+    Numbers least, most;
+    least.fill(1), most.fill(-1);
+    std::array<Numbers, 6> products{};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const glm::dvec3 share = (places[i].translation - plain[i].translation) / spacing;
+        const Numbers all{share.x, share.y, share.z, places[i].scale.x - 1.5, places[i].clip_offset_s - 0.5, 2 * std::asin(places[i].rotation.y)};
+        for (std::size_t a = 0; a < 6; ++a) {
+            least[a] = std::min(least[a], all[a]), most[a] = std::max(most[a], all[a]);
+            for (std::size_t b = 0; b < 6; ++b) products[a][b] += all[a] * all[b] / 1000;
+        }
+    }
+    for (std::size_t a = 0; a < 6; ++a) {
+        // Of 1000 even numbers in [-0.5, 0.5] none is in the last hundredth but with a chance of 4e-5; floats.
+        EXPECT_GE(least[a], -0.5 - 1e-6);
+        EXPECT_LT(least[a], -0.49);
+        EXPECT_LE(most[a], 0.5 + 1e-6);
+        EXPECT_GT(most[a], 0.49);
+        // None follows another: the mean of 1000 products has a sigma of 1 / 12 / sqrt(1000) = 0.0026.
+        for (std::size_t b = 0; b < a; ++b) EXPECT_LT(std::abs(products[a][b]), 4 * 0.0026) << a << ' ' << b;
+    }
+}
+
+TEST(Instances, MeetTheKeysOfTheirClipsInTheirOwnTime) {
+    Stage stage;
+    const int body = stage.add_node("Body");
+    stage.animate(body).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {0.5, {1, 0, 0}}, {9, {0, 0, 0}}});
+    stage.shot.scenes[0].instances = list_of({{{0, 0, 0}}, {{0, 1, 0}, {1, 0, 0, 0}, glm::dvec3(1), 0.3}});
+    const SceneSnapshot snapshot = stage.snapshot();
+    EXPECT_EQ(snapshot.motion.headers[0].frame_count, 3u);  // the key lies at a half of the shutter
+    EXPECT_EQ(snapshot.motion.headers[1].frame_count, 6u);  // and at a fifth
+    EXPECT_LT(snapshot.motion.max_error_px, 1e-4);  // the offset is a float: 1e-8 s, at 2 m/s and 1000 px to the metre
 }
 
 TEST(Instances, PlayTheirClipsWithAnOffset) {

@@ -34,6 +34,54 @@ TEST(MotionReport, TheCamerasErrorIsWhatItsInterpolationMisses) {
     EXPECT_GT(report_of(coarse).camera_px, report.camera_px);
 }
 
+/// A sheet on a node, which a morph target lifts.
+int add_sheet(Stage& stage) {
+    GeometryData& sheet = stage.scene.geometries.emplace_back();
+    sheet.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+    sheet.indices = {0, 1, 2};
+    sheet.targets.push_back({{0, 1, 2}, {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, {}, {}});
+    const int node = stage.add_node("Sheet");
+    stage.node(node).primitives = {{static_cast<int>(stage.scene.geometries.size()) - 1, 0}};
+    stage.node(node).weights = {0};
+    return node;
+}
+/// A path with corners at odd times, of some size: what one part of 129 even frames misses.
+template <class T>
+Track<T> jolts(T reach) {
+    return track<T>({{0, T(0)}, {0.2371, reach}, {0.6113, -reach}, {1, T(0)}});
+}
+
+TEST(MotionReport, AddsWhatPlacesAndVerticesOfABendingMeshMiss) {
+    const auto report = [](bool bends, bool moves, double cube_m) {
+        Stage stage;
+        stage.shot.render.samples = 1;  // nothing is split
+        const int sheet = add_sheet(stage);
+        if (bends) stage.animate(sheet).weights = {jolts(1.0)};
+        if (moves) stage.animate(sheet).translation = jolts(glm::dvec3(0.5, 0, 0));
+        if (cube_m > 0) stage.animate(stage.add_node("Cube")).translation = jolts(glm::dvec3(cube_m, 0, 0));
+        return report_of(stage);
+    };
+    const MotionReport bends = report(true, false, 0), moves = report(false, true, 0), both = report(true, true, 0);
+    ASSERT_GT(bends.vertices_px, 0.1);
+    ASSERT_GT(moves.instances_px, 0.1);
+    EXPECT_EQ(bends.instances_px, bends.vertices_px);
+    EXPECT_EQ(moves.vertices_px, 0);
+    // The error of either is measured by a bound that knows how near the whole comes, hence not to the last digit.
+    EXPECT_NEAR(both.instances_px, both.vertices_px + moves.instances_px, 0.1 * both.instances_px);
+    EXPECT_GT(both.instances_px, 1.05 * std::max(both.vertices_px, moves.instances_px));
+    EXPECT_EQ(both.worst, "node 'stage/Sheet'");
+    // A body beside it, that strays less or more than both together: nothing is added to it.
+    const MotionReport far = report(true, true, 5), near = report(true, true, 0.01), alone = report(false, false, 5);
+    EXPECT_EQ(near.instances_px, both.instances_px);
+    EXPECT_EQ(near.worst, "node 'stage/Sheet'");
+    EXPECT_GT(alone.instances_px, both.instances_px);
+    EXPECT_EQ(far.instances_px, alone.instances_px);
+    EXPECT_EQ(far.worst, "node 'stage/Cube'");
+    const MotionReport vertices = report(true, false, 0.01);  // of the places the cube's strays most
+    EXPECT_EQ(vertices.instances_px, bends.instances_px);
+    EXPECT_EQ(vertices.worst, "node 'stage/Sheet'");
+}
+
 TEST(MotionReport, NamesWhatMissesTheTolerance) {
     // Eleven keys at odd times within one shutter, every one a jolt: no even grid of 129 frames meets them.
     Stage stage;

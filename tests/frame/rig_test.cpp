@@ -108,6 +108,27 @@ TEST(Rig, ShakeComesOnTopAndLeavesTheFocusAlone) {
     EXPECT_LE(worst_error_px(stage), 0.1 + 2e-3);
 }
 
+TEST(Rig, ShakeTurnsAboutTheCamerasOwnAxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+        Stage stage;
+        stage.shot.camera.position = glm::dvec3(3, 4, 5);
+        stage.shot.camera.look_at = Track<glm::dvec3>(glm::dvec3(-1, 0, 2));
+        const CameraState steady = camera_at(stage.bind(), 0.4);
+        glm::dvec3 amplitude(0);
+        amplitude[axis] = 0.2;
+        stage.shot.camera.shake = Shake{glm::dvec3(0), amplitude, 4, 3};
+        const CameraState shaken = camera_at(stage.bind(), 0.4);
+        const double angle = evaluate(*stage.shot.camera.shake, 0.4).turn_rad[axis];
+        ASSERT_GT(std::abs(angle), 0.01);
+        // The axis of the turn stays where the steady camera has it; the next one goes towards the one after it.
+        glm::dvec3 own(0), next(0), wanted(0);
+        own[axis] = 1, next[(axis + 1) % 3] = 1;
+        wanted[(axis + 1) % 3] = std::cos(angle), wanted[(axis + 2) % 3] = std::sin(angle);
+        EXPECT_LT(glm::distance(shaken.rotation * own, steady.rotation * own), 1e-14) << axis;
+        EXPECT_LT(glm::distance(shaken.rotation * next, steady.rotation * wanted), 1e-14) << axis;
+    }
+}
+
 TEST(Rig, ShakeFasterThanTheShutterIsNotPassedOver) {
     Stage stage;
     stage.shot.camera.shake = Shake{glm::dvec3(0.002), glm::dvec3(0.001), 25, 1};  // 25 cycles in the shutter

@@ -223,5 +223,15 @@ TEST(ShutterSplit, PathsAreSplitInTheirCorners) {
     }
 }
 
+TEST(ShutterSplit, CopiesAreSplitInTheCornersOfTheirOwnTime) {
+    Stage stage = full_hd();
+    stage.animate(stage.add_node("Cube")).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {2, {0, 0, 0}}, {2.1931, {1, 0, 0}}, {3, {-1, 0.5, 0}}});
+    stage.shot.scenes[0].instances.emplace().list = {{{0, 0, 0}, {1, 0, 0, 0}, glm::dvec3(1), 2}};
+    const std::vector<SceneSnapshot> parts = stage.snapshots();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_NEAR(parts[0].close_s, 0.1931, 1e-15);
+    for (const SceneSnapshot& part : parts) EXPECT_LT(part.motion.max_error_px, 1e-9);
+}
+
 }  // namespace
 }  // namespace kadr::test

@@ -192,6 +192,21 @@ TEST(Morphing, AddsTargetsBeforeTheJoints) {
     EXPECT_LT(glm::distance(to_double(v[8].normal), glm::dvec3(0, 1, 0)), kRounding);  // a target without normals keeps them
 }
 
+TEST(Morphing, MovesTangentsWithTheirTarget) {
+    GeometryData g = tube(3, 4);
+    g.tangents.assign(g.positions.size(), Vec4f{0, 1, 0, -1});
+    g.targets.push_back({{0, 8}, {{0, 0, 0}, {0, 0, 0}}, {}, {{1, 0, 0}, {0, 0, 2}}});
+    g.targets.push_back({{8}, {{0, 0, 2}}, {}, {}});  // one without tangents keeps them
+    std::vector<Vertex> vertices(g.positions.size());
+    std::vector<Vec4f> tangents(g.positions.size());
+    deform_vertices(g, VertexPose({{glm::dmat4(1), rotation(kPi / 2, {0, 0, 1})}, {1, 0.25}}, Skinning::linear), vertices, tangents);
+    const auto direction = [&](std::size_t i) { return glm::dvec3(tangents[i].x, tangents[i].y, tangents[i].z); };
+    EXPECT_LT(glm::distance(direction(0), glm::normalize(glm::dvec3(1, 1, 0))), kRounding);
+    EXPECT_LT(glm::distance(direction(1), glm::dvec3(0, 1, 0)), kRounding);
+    EXPECT_LT(glm::distance(direction(8), glm::normalize(glm::dvec3(-1, 0, 2))), kRounding);  // (0, 1, 2), then a quarter turn
+    EXPECT_EQ(tangents[8].w, -1);
+}
+
 TEST(Morphing, KeepsMirroredTangentsRightHanded) {
     GeometryData g = tube(3, 4);
     g.tangents.assign(g.positions.size(), Vec4f{0, 1, 0, 1});

@@ -21,17 +21,17 @@ public:
         }
         script.passes.push_back(pass);
         for (int y = 0; y < film.height(); ++y)
-            for (int x = 0; x < film.width(); ++x) add(film, x, y, pass, script.scale);
+            for (int x = 0; x < film.width(); ++x) add(film, x, y, pass, script.scale, script.noise);
         statistics_.pixel_samples += static_cast<std::uint64_t>(film.width()) * film.height() * pass.sample_count;
         if (pass.progress) pass.progress(1);
     }
     DeviceStatistics statistics() const override { return statistics_; }
 
 private:
-    void add(Film& film, int x, int y, const Pass& pass, float scale) const {
+    void add(Film& film, int x, int y, const Pass& pass, float scale, float noise) const {
         const int count = pass.sample_count, half = pass.half;
         if (pass.active && pass.active[static_cast<std::size_t>(y * film.width() + x)] == 0) return;
-        const float value = scale * static_cast<float>(x + y + frame_ + 0.01 * seed_) / 64.0f;
+        const float value = scale * static_cast<float>(x + y + frame_ + 0.01 * seed_) / 64.0f + (half == 0 ? noise : -noise) * static_cast<float>(frame_ + 1);
         Film::Beauty& beauty = film.beauty(x, y, half);
         beauty.r += count * value;
         beauty.g += count * value * 0.5f;

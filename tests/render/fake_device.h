@@ -12,6 +12,7 @@ struct FakeDeviceScript {
     std::vector<Pass> passes;                         ///< as they came
     std::function<void(int render)> before_render;    ///< called with the count so far
     float scale = 1;                                  ///< times the gradient
+    float noise = 0;                                  ///< added in one half and taken off the other, once more in each frame
 };
 FakeDeviceScript& fake_device();
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "output/frame_writer.h"
 #include "output/image_io.h"
@@ -173,6 +175,40 @@ TEST_F(RenderJobTest, MetersTheShotsFirstFrameWhateverIsRendered) {
     options_.overrides.frames = "3";
     run();
     EXPECT_EQ(image_io().read(file("tiny.0003.png")).pixels, whole.pixels);
+}
+
+/// A shot of three frames in which the triangle, and from frame 1 on the camera too, are shaken at odd times.
+std::string shaken_shot(const std::string& render) {
+    return "kadr: 1\nname: shaken\ntiming: { fps: 1, frames: 0-2 }\nimage: { size: [12, 8] }\n"
+           "scenes:\n  - id: triangle\n    gltf: triangle.gltf\n"
+           "    transform: { translate: { keys: { 0 s: [0, 0, 0], 0.2371 s: [1, 0, 0], 0.6113 s: [-1, 0, 0], 1 s: [0, 0, 0] }, after: repeat } }\n"
+           "camera: { position: { keys: { 1 s: [0, 0, 4], 1.1371 s: [3, 0, 4], 1.3113 s: [-3, 0, 4], 2 s: [0, 0, 4] } }, look_at: [0, 0, 0] }\n"
+           "environment: { color: [1, 1, 1] }\nshutter: { angle: 360 deg }\n"
+           "output: { frames: \"out/{frame}.png\" }\nrender: { motion_tolerance: 0.001 px, " + render + " }\n";
+}
+
+TEST_F(RenderJobTest, WarnsOnceOfEveryThingThatStrays) {
+    const auto warnings_with = [&](const std::string& render) {
+        write_text(folder_.path() / "shaken.yaml", shaken_shot(render));
+        options_.shot = folder_.path() / "shaken.yaml";
+        options_.overwrite = true;
+        std::vector<Diagnostic> warnings;
+        events_.warning = [&](const Diagnostic& warning) { warnings.push_back(warning); };
+        const RenderSummary summary = run();
+        EXPECT_EQ(summary.warnings.size(), warnings.size());
+        return warnings;
+    };
+    const std::vector<Diagnostic> warnings = warnings_with("samples: 1");
+    ASSERT_EQ(warnings.size(), 2u);
+    for (const FrameReport& report : reports_) EXPECT_FALSE(report.motion.met());
+    EXPECT_EQ(warnings[0].text(), fmt::format("warning: frame 0: node 'triangle/Triangle' strays {:.3g} px from its true path, more than render.motion_tolerance, 0.001 px\n"
+                                              "  129 motion frames in each of 1 part of the shutter are not enough for it; close the shutter earlier, raise the tolerance, "
+                                              "or render.samples: no part gets less than one",
+                                              reports_[0].motion.largest_px()));
+    EXPECT_THAT(warnings[1].found, HasSubstr("frame 1: the camera strays"));
+    const std::vector<Diagnostic> split = warnings_with("samples: 2");
+    ASSERT_FALSE(split.empty());
+    EXPECT_THAT(split[0].expected, HasSubstr("in each of 2 parts of the shutter"));
 }
 
 std::string bytes_of(const fs::path& path) {

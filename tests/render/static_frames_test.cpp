@@ -75,6 +75,50 @@ TEST_F(StaticFrames, AnAnimatedSeedLooksDifferentEveryTime) {
     EXPECT_THAT(same_, ElementsAre(-1, -1, -1, -1, -1, -1));
 }
 
+TEST_F(StaticFrames, CountTheirWorkOnce) {
+    std::vector<FrameReport> reports;
+    events_.frame_done = [&](const FrameReport& report) { reports.push_back(report); };
+    fake_device().noise = 0.01f;
+    const RenderSummary summary = run("{ keys: { 0 f: 1, 1 f: 2, 2 f: 1 }, interpolate: step }", "render: { samples: 4 }");
+    ASSERT_EQ(reports.size(), 6u);
+    EXPECT_EQ(summary.pixel_samples, 2u * 12 * 8 * 4);
+    EXPECT_EQ(summary.same, 4);
+    EXPECT_EQ(summary.stopped_by.begin()->second, 2);
+    ASSERT_TRUE(summary.relmse);
+    EXPECT_DOUBLE_EQ(*summary.relmse, 0.5 * (reports[0].sampling.error.relmse + reports[1].sampling.error.relmse));
+    EXPECT_NE(reports[0].sampling.error.relmse, reports[1].sampling.error.relmse);
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(reports[i].frame, static_cast<int>(i));
+        EXPECT_EQ(reports[i].samples, 12u * 8 * 4) << i;                            // what the image has
+        EXPECT_EQ(reports[i].device.pixel_samples, i < 2 ? 12u * 8 * 4 : 0u) << i;  // what was done for it
+        EXPECT_EQ(reports[i].sampling.error.relmse, reports[i == 1 ? 1 : 0].sampling.error.relmse) << i;
+        EXPECT_FALSE(reports[i].reused) << i;
+    }
+    EXPECT_EQ(image_io().read(file(1)).pixels == image_io().read(file(2)).pixels, false);
+}
+
+TEST_F(StaticFrames, AreSeenWithTheExposureOfTheirOwnTime) {
+    options_.overrides.output = (folder_.path() / "out/{frame}.png").string();
+    run("1", "view: { transform: none, exposure: { keys: { 0 f: 0, 2 f: 2 } } }");
+    EXPECT_EQ(fake_device().renders, 1);
+    EXPECT_THAT(same_, ElementsAre(-1, 0, 0, 0, 0, 0));
+    const auto read = [&](int frame) { return image_io().read(folder_.path() / "out" / (std::to_string(frame) + ".png")); };
+    const Image plain = read(0);
+    constexpr float kStep = 1.0f / 255;  // half of one of the PNG, times the factor, and half of one
+    for (const int frame : {1, 2, 5}) {
+        const float factor = frame == 1 ? 2 : 4;
+        const Image seen = read(frame);
+        for (const int x : {0, 5, 11})
+            EXPECT_NEAR(seen.at(x, 4, 0), std::min(1.0f, factor * plain.at(x, 4, 0)), 0.5f * (factor + 1) * kStep) << frame << ' ' << x;
+        EXPECT_EQ(image_io().read_metadata(folder_.path() / "out" / (std::to_string(frame) + ".png")).at("exposure_stops"), frame == 1 ? "1" : "2");
+    }
+}
+
+TEST_F(StaticFrames, AreSampledAnewWhereAnotherExposureShowsMoreOfTheirNoise) {
+    run("1", "view: { exposure: { keys: { 0 f: 0, 2 f: 2, 3 f: 2, 4 f: 0 } } }\nrender: { samples: { max_error: 0.01 } }");
+    EXPECT_THAT(same_, ElementsAre(-1, -1, -1, 2, 0, 0));
+}
+
 TEST(FrameCache, HoldsTheNewestFramesThatFit) {
     const auto frame = [](std::size_t floats) {
         RenderedFrame result;

@@ -80,6 +80,26 @@ TEST(Skins, NormaliseWeightsOfEveryType) {
     }), 49151.0f / 65535);
 }
 
+TEST(Skins, NormaliseTheWeightsOfAllSetsTogether) {
+    Skinned file;
+    file.joints({0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}, 1);
+    file.weights({2, 1, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0});
+    file.weights({4, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, 1);
+    const SkinWeights skin = file.load().geometries.at(0).skin;
+    ASSERT_EQ(skin.per_vertex, 4);
+    EXPECT_THAT(skin.weights, ElementsAre(0.5f, 0.25f, 0.125f, 0.125f, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0));
+    EXPECT_THAT(std::vector<std::uint16_t>(skin.joints.begin(), skin.joints.begin() + 2), ElementsAre(0, 0));  // the heaviest of both sets first
+}
+
+TEST(Skins, WeightsBelowZeroTakeNoPart) {
+    Skinned file;
+    file.weights({3, -1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    const Scene scene = file.load();
+    EXPECT_THAT(scene.geometries.at(0).skin.weights, ElementsAre(1, 1, 1));
+    EXPECT_THAT(scene.geometries.at(0).skin.joints, ElementsAre(0, 1, 1));
+    ASSERT_THAT(scene.warnings, SizeIs(1));
+}
+
 TEST(Skins, RepairVerticesWithoutWeight) {
     Skinned file;
     file.joints({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
