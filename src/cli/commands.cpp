@@ -12,6 +12,7 @@
 
 #include "cli/reporter.h"
 #include "device/device.h"
+#include "device/gpu_report.h"
 #include "output/frame_writer.h"
 #include "render/reel_job.h"
 #include "render/reel_plan.h"
@@ -228,6 +229,15 @@ int run_info(const Invocation& invocation) {
     return kDone;
 }
 
+void print_gpu_report(bool json) {
+    const std::vector<std::string> needs = describe_gpu_needs(), unproven = unproven_on_gpu();
+    if (json) return print(json_line({{"gpu_needs", needs}, {"unproven_on_gpu", unproven}}));
+    print("to use a GPU, in this order:\n");
+    for (const std::string& need : needs) print(fmt::format("  {}\n", need));
+    print("what no GPU has shown yet:\n");
+    for (const std::string& what : unproven) print(fmt::format("  {}\n", what));
+}
+
 int run_devices(const Invocation& invocation) {
     for (const DeviceReport& device : list_devices()) {
         if (invocation.json)
@@ -237,6 +247,7 @@ int run_devices(const Invocation& invocation) {
             print(fmt::format("{:<6} {}{}\n", device.name, device.usable ? "usable" : "not usable: " + device.reason,
                               device.description.empty() ? "" : "; " + device.description));
     }
+    if (invocation.verbose) print_gpu_report(invocation.json);
     return kDone;
 }
 

@@ -8,11 +8,11 @@
 #include "base/error.h"
 #include "device/device.h"
 #include "device/embree/embree_device.h"
+#include "device/hiprt/gpu_probe.h"
+#include "device/hiprt/orochi_runtime.h"
 
 namespace kadr {
 namespace {
-
-constexpr const char* kNoHiprt = "this build has no HIPRT back end yet";
 
 /// Lanes by request, KADR_WIDTH or the processor. @throws InputError for a width that cannot run here
 int choose_width(int requested) {
@@ -38,17 +38,23 @@ std::string processor_name() {
     return "unknown processor";
 }
 
+/// Why there is no GPU to render on, in one sentence.
+std::string why_no_gpu() {
+    const GpuProbe probe = probe_gpu(this_machine(), built_with_orochi());
+    return probe.complete() ? "this build cannot render on a GPU yet" : probe.missing();
+}
+
 }  // namespace
 
 DeviceChoice make_device(const DeviceRequest& request) {
     if (request.name == "hiprt")
-        throw InputError(fmt::format("--device hiprt: {}", kNoHiprt),
+        throw InputError(fmt::format("--device hiprt: {}", why_no_gpu()),
                          "use --device cpu, or --device auto, which takes the best that works");
     if (request.name != "auto" && request.name != "cpu")
         throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu or hiprt");
     DeviceChoice choice;
     choice.device = make_embree_device(request.threads, choose_width(request.width));
-    choice.why = request.name == "cpu" ? "asked for by --device cpu" : kNoHiprt;
+    choice.why = request.name == "cpu" ? "asked for by --device cpu" : why_no_gpu();
     return choice;
 }
 
@@ -58,7 +64,7 @@ std::vector<DeviceReport> list_devices() {
              fmt::format("{}, {} threads, {} lane{}", processor_name(), std::thread::hardware_concurrency(), width,
                          width == 1 ? "" : "s"),
              true, ""},
-            {"hiprt", "AMD and NVIDIA GPUs through HIPRT and Orochi", false, kNoHiprt}};
+            {"hiprt", "AMD and NVIDIA GPUs through HIPRT and Orochi", false, why_no_gpu()}};
 }
 
 }  // namespace kadr

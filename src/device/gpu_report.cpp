@@ -1,0 +1,24 @@
+#include "device/gpu_report.h"
+
+#include <fmt/format.h>
+
+#include "device/hiprt/gpu_probe.h"
+#include "device/hiprt/orochi_runtime.h"
+
+namespace kadr {
+
+std::vector<std::string> describe_gpu_needs() {
+    std::vector<std::string> lines;
+    for (const GpuNeed& need : probe_gpu(this_machine(), built_with_orochi()).needs)
+        lines.push_back(fmt::format("{}: {}", need.name, need.missing.empty() ? need.found : need.missing));
+    return lines;
+}
+
+std::vector<std::string> unproven_on_gpu() {
+    return {
+        "every call of HIPRT and Orochi: they were made to fakes that check their arguments",
+        "opening a real libhiprt, and the driver's libraries beside it",
+    };
+}
+
+}  // namespace kadr
