@@ -132,8 +132,10 @@ TEST(Robustness, CullingAndMirrorsKeepTheFront) {
 
 TEST(Device, NamesAndRefusals) {
     DeviceRequest request;
-    request.name = "gpu";
-    EXPECT_THROW(make_device(request), InputError);
+    for (const char* name : {"gpu", "hiprt:", "hiprt:first", "hiprt:-1", "hiprt:0,1"}) {
+        request.name = name;
+        EXPECT_THROW(make_device(request), InputError) << name;
+    }
     EXPECT_EQ(list_devices().size(), 2u);
 }
 

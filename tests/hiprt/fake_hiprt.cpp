@@ -125,11 +125,13 @@ struct FakeEntryPoints {
         f.check_options(options);
         for (std::uint32_t i = 0; i < count; ++i) {
             f.check_mesh(inputs[i], options);
-            const std::size_t bytes = 256 + inputs[i].mesh.triangle_count * f.bytes_per_triangle;
+            const std::size_t bytes =
+                256 + inputs[i].mesh.triangle_count *
+                          f.bytes_per_triangle_of[options.flags & hiprt::build_flag::kQualityMask];
             const DeviceAddress address = f.take(bytes);
             if (address == 0) {
                 for (std::uint32_t k = 0; k < i; ++k) {
-                    (void)f.runtime_.release(number_of(*created[k]));
+                    f.give_back(*created[k]);
                     f.geometries.erase(*created[k]);
                     *created[k] = nullptr;
                 }
@@ -157,7 +159,7 @@ struct FakeEntryPoints {
                 }
         if (f.runtime_.is_pending({number_of(geometry), found->second.bytes}))
             f.fault("destroy_geometry: work on it is pending");
-        (void)f.runtime_.release(number_of(geometry));
+        f.give_back(geometry);
         f.geometries.erase(found);
         return fails ? Error::internal : Error::success;
     }
@@ -224,6 +226,8 @@ struct FakeEntryPoints {
         FakeHiprt& f = of(context, "compact_geometries");
         if (f.runtime_.begin_call("compact_geometries")) return Error::internal;
         if (count == 0 || !in || !out) return Error::invalid_parameter;
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (f.runtime_.is_pending({number_of(in[i]), 1})) f.fault("compact_geometries: it is still being built");
         f.runtime_.run_all(stream);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto found = f.geometries.find(in[i]);
@@ -236,7 +240,7 @@ struct FakeEntryPoints {
             record.compacted = true;
             const DeviceAddress address = f.take(record.bytes);
             if (address == 0) return Error::internal;
-            (void)f.runtime_.release(number_of(in[i]));
+            f.give_back(in[i]);
             f.geometries.erase(found);
             *out[i] = reinterpret_cast<hiprt::Geometry>(address);
             f.geometries[*out[i]] = record;
@@ -271,7 +275,7 @@ struct FakeEntryPoints {
         }
         if (f.runtime_.is_pending({number_of(scene), found->second.bytes}))
             f.fault("destroy_scene: work on it is pending");
-        (void)f.runtime_.release(number_of(scene));
+        f.give_back(scene);
         f.scenes.erase(found);
         return fails ? Error::internal : Error::success;
     }
@@ -350,7 +354,7 @@ struct FakeEntryPoints {
             f.fault("destroy_function_table: no such table");
             return Error::invalid_parameter;
         }
-        (void)f.runtime_.release(number_of(table));
+        f.give_back(table);
         return fails ? Error::internal : Error::success;
     }
 
@@ -419,6 +423,13 @@ DeviceAddress FakeHiprt::take(std::size_t bytes) {
     runtime_.calls.pop_back();
     runtime_.failing_call = failing;
     return address;
+}
+
+void FakeHiprt::give_back(const void* structure) {
+    const int failing = std::exchange(runtime_.failing_call, -1);
+    (void)runtime_.release(number_of(structure));
+    runtime_.calls.pop_back();
+    runtime_.failing_call = failing;
 }
 
 void FakeHiprt::check_options(const hiprt::BuildOptions& options) {

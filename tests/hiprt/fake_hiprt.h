@@ -57,7 +57,8 @@ public:
     const SceneRecord& scene() const { return scenes.begin()->second; }
 
     // What a test sets.
-    std::size_t bytes_per_triangle = 64, bytes_per_instance = 128, temporary_per_primitive = 32;
+    std::vector<std::size_t> bytes_per_triangle_of = {64, 64, 64};  ///< by quality
+    std::size_t bytes_per_instance = 128, temporary_per_primitive = 32;
     double most_degrees_a_step = 10.01;  ///< 10, and what floats add
 
 private:
@@ -74,6 +75,7 @@ private:
     void run_scene_build(hiprt::Scene scene, const hiprt::SceneBuildInput& input);
     void check_frames(const SceneRecord& scene, const kernels::TransformHeader& header, hiprt::FrameType type);
     DeviceAddress take(std::size_t bytes);  ///< 0: full
+    void give_back(const void* structure);
 
     RecordingRuntime& runtime_;
     std::map<std::pair<void*, std::size_t>, SizeAnswer> geometry_sizes_;         ///< by vertices and triangle count

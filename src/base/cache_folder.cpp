@@ -1,4 +1,4 @@
-#include "output/cache_folder.h"
+#include "base/cache_folder.h"
 
 #include <cstdlib>
 
