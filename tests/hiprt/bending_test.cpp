@@ -103,6 +103,24 @@ TEST(BendingOnGpu, ThoseShownNoMoreAreForgotten) {
     EXPECT_EQ(b.complaints(), "");
 }
 
+TEST(BendingOnGpu, AFrameThatFailedLeavesNoVerticesBehind) {
+    Bending b;
+    b.show(1, 1);
+    const std::size_t before = b.gpu.runtime->calls.size();
+    b.show(2, 1.0001f);
+    // The same again, but HIPRT fails once the new vertices are on their way.
+    b.show(1, 1);
+    std::size_t update = before;
+    while (b.gpu.runtime->calls[update] != "build_geometries") ++update;
+    b.gpu.runtime->failing_call = static_cast<int>(b.gpu.runtime->calls.size() + update - before);
+    EXPECT_THROW(b.show(2, 1.0001f), RenderError);
+    b.show(1, 1);
+    b.render();
+    const kernels::SceneView& view = b.gpu.launches.back().scene;
+    EXPECT_EQ(view.geometries[view.instances[1].geometry].vertices[2].position.x, 1.0f);
+    EXPECT_EQ(b.complaints(), "");
+}
+
 TEST(BendingOnGpu, BlurIsRefusedByName) {
     Bending b;
     try {

@@ -78,7 +78,9 @@ struct FakeEntryPoints {
         if (version != hiprt::kApiVersion) return Error::invalid_api_version;
         f.runtime_.expect_current("create_context");
         if (input.context != f.runtime_.native_context()) f.fault("create_context: not the runtime's context");
-        if (input.device_type != hiprt::DeviceType::nvidia) f.fault("create_context: not the runtime's vendor");
+        const bool amd = f.runtime_.vendor == GpuVendor::amd;
+        if (input.device_type != (amd ? hiprt::DeviceType::amd : hiprt::DeviceType::nvidia))
+            f.fault("create_context: not the runtime's vendor");
         if (f.has_context) f.fault("create_context: there is one already");
         f.has_context = true;
         context = reinterpret_cast<hiprt::Context>(&f);

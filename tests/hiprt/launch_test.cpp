@@ -1,5 +1,6 @@
 // Cutting passes into launches, and the names under which kernels are compiled and kept.
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "device/hiprt/gpu_resources.h"
 #include "device/hiprt/kernel_cache.h"
 #include "device/hiprt/launch_planner.h"
+#include "device/hiprt/launch_queue.h"
 #include "device/hiprt/trace_kernels.h"
 #include "fake_hiprt.h"
 
@@ -81,6 +83,24 @@ TEST(LaunchBudget, FollowsWhatLaunchesTake) {
     EXPECT_EQ(budget.pixel_samples(), LaunchBudget::kMost);
 }
 
+TEST(LaunchQueue, NothingRunsAnyMoreAfterItHasBeenCancelled) {
+    test::RecordingRuntime runtime;
+    check(runtime.make_current(), "use the GPU");
+    runtime.on_launch = [](const std::string&, const std::byte*) { return 0.01; };
+    const GpuStream stream(runtime);
+    LaunchQueue queue(runtime, stream);
+    const GpuFunctionHandle kernel = runtime.make_function("kernel");
+    std::atomic<bool> cancel{false};
+    const auto progress = [&](double) { cancel = runtime.count("launch") == 3; };
+    EXPECT_FALSE(queue.run(kernel, {}, {0, 0, 1000, 1000, 0, 100}, &cancel, progress));
+    EXPECT_EQ(runtime.count("launch"), 3u);
+    EXPECT_TRUE(runtime.is_idle());
+    EXPECT_EQ(runtime.launch_s.size(), 3u);
+    cancel = false;
+    EXPECT_TRUE(queue.run(kernel, {}, {0, 0, 10, 10, 0, 1}, &cancel, {}));
+    EXPECT_THAT(runtime.faults, ::testing::IsEmpty());
+}
+
 /// A folder that is gone after the test.
 struct Folder {
     fs::path path = fs::temp_directory_path() / ("kadr_launch_test." + std::to_string(::getpid()));
@@ -94,7 +114,8 @@ struct Compiler {
     test::FakeHiprt fake{runtime};
     hiprt::Api api = test::FakeHiprt::api();
     std::optional<HiprtContext> context;
-    Compiler() {
+    explicit Compiler(GpuVendor vendor = GpuVendor::nvidia) {
+        runtime.vendor = vendor;
         check(runtime.make_current(), "use the GPU");
         context.emplace(api, runtime, "");
     }
@@ -137,6 +158,19 @@ TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
     EXPECT_THAT(module.options,
                 ::testing::ElementsAre(std::string("-I") + KADR_SOURCE_DIR, "--fmad=false", "--ftz=true"));
     EXPECT_THAT(compiler.runtime.faults, ::testing::IsEmpty());
+}
+
+KernelSource source_for(GpuVendor vendor) {
+    Compiler compiler(vendor);
+    return TraceKernels(*compiler.context, KADR_SOURCE_DIR).source_of({kernels::IntegratorKind::path, 2, false});
+}
+
+TEST(TraceKernels, EachVendorsCompilerGetsItsOptions) {
+    const KernelSource nvidia = source_for(GpuVendor::nvidia), amd = source_for(GpuVendor::amd);
+    EXPECT_THAT(amd.options, ::testing::ElementsAre(std::string("-I") + KADR_SOURCE_DIR, "-ffp-contract=off",
+                                                    "-fgpu-flush-denormals-to-zero"));
+    EXPECT_EQ(nvidia.text, amd.text);
+    EXPECT_NE(nvidia.module, amd.module);
 }
 
 TEST(TraceKernels, AFailedCompilationIsAnError) {

@@ -70,6 +70,11 @@ bool RecordingRuntime::is_pending(const Range& range) const {
     return false;
 }
 
+bool RecordingRuntime::is_idle() const {
+    return std::all_of(streams_.begin(), streams_.end(),
+                       [](const auto& stream) { return stream.second->work.empty(); });
+}
+
 void RecordingRuntime::enqueue(GpuStreamHandle handle, std::vector<Range> uses, std::function<void()> run) {
     Stream* stream = stream_of(handle, "work");
     if (stream) stream->work.push_back({std::move(uses), std::move(run)});

@@ -34,6 +34,7 @@ public:
     int failing_call = -1;  ///< number of the call that fails, from 0
     GpuResult::Kind failure = GpuResult::Kind::failure;
     std::size_t capacity = std::size_t{1} << 30;  ///< bytes of device memory
+    GpuVendor vendor = GpuVendor::nvidia;
     /// Runs a kernel. `argument`: a copy of the launch's one argument. @return seconds that it took
     std::function<double(const std::string& function, const std::byte* argument)> on_launch;
 
@@ -54,11 +55,12 @@ public:
     bool expect_device(const Range& range, const std::string& what);
     void enqueue(GpuStreamHandle stream, std::vector<Range> uses, std::function<void()> run);
     bool is_pending(const Range& range) const;
+    bool is_idle() const;  ///< nothing is pending
     void run_all(GpuStreamHandle stream);
     GpuFunctionHandle make_function(const std::string& name);
     void expect_current(const std::string& call);
 
-    GpuProperties properties() const override { return {"a recording", "fake_1", GpuVendor::nvidia, capacity}; }
+    GpuProperties properties() const override { return {"a recording", "fake_1", vendor, capacity}; }
     GpuResult make_current() override;
     GpuResult memory(std::size_t& free_bytes, std::size_t& total_bytes) override;
     void* native_context() const override { return const_cast<RecordingRuntime*>(this); }

@@ -12,8 +12,6 @@ unsigned blocks(int pixels, int block) { return static_cast<unsigned>((pixels + 
 bool LaunchQueue::run(GpuFunctionHandle function, kernels::LaunchParams params, const LaunchPiece& pass,
                       const std::atomic<bool>* cancel, const std::function<void(double)>& progress) {
     LaunchPlanner planner(pass);
-    // What a failure left behind is not on its way any more.
-    for (Slot& slot : slots_) slot.pixel_samples = 0;
     for (int turn = 0;; turn = 1 - turn) {
         wait_for(slots_[turn]);
         if (is_set(cancel)) break;

@@ -5,6 +5,8 @@
 
 #include <Orochi/Orochi.h>
 
+#include <optional>
+
 #include <fmt/format.h>
 
 namespace kadr {
@@ -27,11 +29,9 @@ GpuResult result_of(oroError error) {
     return {Kind::failure, text_of(error)};
 }
 
-/// oroInit reports success even when nothing was loaded; oroInitialize tells.
-void start_driver(GpuVendor vendor) {
-    static bool started[2] = {};
-    bool& done = started[static_cast<int>(vendor)];
-    if (done) return;
+/// oroInit reports success even when nothing was loaded; oroInitialize tells, but only when it is called first: after a
+/// failure its second call reports success with no function in place.
+void start_driver_once(GpuVendor vendor) {
     if (oroInitialize(api_of(vendor), 0) != ORO_SUCCESS)
         throw RenderError("cannot start the GPU's driver: Orochi loaded none of its libraries");
     const oroApi driver = vendor == GpuVendor::amd ? ORO_API_HIPDRIVER : ORO_API_CUDADRIVER;
@@ -39,7 +39,19 @@ void start_driver(GpuVendor vendor) {
         throw RenderError(fmt::format("cannot start the GPU's driver: this Orochi was built without {}",
                                       vendor == GpuVendor::amd ? "HIP" : "CUDA (OROCHI_ENABLE_CUEW)"));
     check(result_of(oroInit(0)), "start the GPU's driver");
-    done = true;
+}
+
+/// @throws RenderError  the same one every time
+void start_driver(GpuVendor vendor) {
+    static std::optional<std::string> failures[2];  ///< by vendor; empty text: it works
+    std::optional<std::string>& failure = failures[static_cast<int>(vendor)];
+    if (!failure) try {
+            start_driver_once(vendor);
+            failure = "";
+        } catch (const RenderError& error) {
+            failure = error.what();
+        }
+    if (!failure->empty()) throw RenderError(*failure);
 }
 
 oroStream stream_of(GpuStreamHandle stream) { return static_cast<oroStream>(stream); }
