@@ -200,7 +200,7 @@ void Parser::add_set(CLI::App* app) {
 }
 
 void Parser::add_device(CLI::App* app) {
-    app->add_option("--device", raw_.device, "auto, cpu or hiprt")->capture_default_str();
+    app->add_option("--device", raw_.device, "auto, cpu, hiprt or hiprt:N (a GPU by number)")->capture_default_str();
     app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)")->check(CLI::PositiveNumber);
 }
 
@@ -328,7 +328,9 @@ void Parser::add_info() {
 
 void Parser::add_devices() {
     CLI::App* app = add(Command::devices, "devices", "what there is to render on, what is usable and why not",
-                        "kadr devices");
+                        "kadr devices --verbose");
+    app->add_flag("--verbose", invocation_.verbose,
+                  "what was looked for to use a GPU, and what no GPU has shown yet");
     app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
 

@@ -27,7 +27,7 @@ struct Invocation {
     std::string key;                             ///< describe
     bool json_schema = false;
     bool json = false, stats = false;
-    bool verbose = false;                        ///< check
+    bool verbose = false;                        ///< check, devices
     std::string text;                            ///< help or version asked for: print this and end
 };
 

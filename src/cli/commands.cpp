@@ -12,6 +12,7 @@
 
 #include "cli/reporter.h"
 #include "device/device.h"
+#include "device/gpu_report.h"
 #include "output/frame_writer.h"
 #include "render/denoising.h"
 #include "render/reel_job.h"
@@ -245,6 +246,15 @@ void print_denoiser(bool json) {
         print(fmt::format("{:<6} {}; the denoiser of render.denoise\n", "oidn", reason.empty() ? "usable: version " + version : "not usable: " + reason));
 }
 
+void print_gpu_report(bool json) {
+    const std::vector<std::string> needs = describe_gpu_needs(), unproven = unproven_on_gpu();
+    if (json) return print(json_line({{"gpu_needs", needs}, {"unproven_on_gpu", unproven}}));
+    print("to use a GPU, in this order:\n");
+    for (const std::string& need : needs) print(fmt::format("  {}\n", need));
+    print("what no GPU has shown yet:\n");
+    for (const std::string& what : unproven) print(fmt::format("  {}\n", what));
+}
+
 int run_devices(const Invocation& invocation) {
     for (const DeviceReport& device : list_devices()) {
         if (invocation.json)
@@ -255,6 +265,7 @@ int run_devices(const Invocation& invocation) {
                               device.description.empty() ? "" : "; " + device.description));
     }
     print_denoiser(invocation.json);
+    if (invocation.verbose) print_gpu_report(invocation.json);
     return kDone;
 }
 

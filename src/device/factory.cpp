@@ -1,18 +1,20 @@
+#include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "device/device.h"
 #include "device/embree/embree_device.h"
+#include "device/hiprt/gpu_access.h"
 
 namespace kadr {
 namespace {
-
-constexpr const char* kNoHiprt = "this build has no HIPRT back end yet";
 
 /// Lanes by request, KADR_WIDTH or the processor. @throws InputError for a width that cannot run here
 int choose_width(int requested) {
@@ -38,27 +40,64 @@ std::string processor_name() {
     return "unknown processor";
 }
 
+/// The GPU of "hiprt" or "hiprt:2"; none for other names.
+/// @throws InputError  for a list of GPUs, or what is no number
+std::optional<int> gpu_number(const std::string& name) {
+    if (name == "hiprt") return 0;
+    if (!name.starts_with("hiprt:")) return std::nullopt;
+    const std::string number = name.substr(6);
+    if (number.find(',') != std::string::npos)
+        throw InputError(fmt::format("--device {}: frames are not dealt out to several GPUs yet", name), "name one, as in hiprt:0");
+    int value = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc() || end != number.data() + number.size() || value < 0)
+        throw InputError(fmt::format("--device is '{}'", name), "expected the number of a GPU, as in hiprt:0; see kadr devices");
+    return value;
+}
+
+DeviceChoice make_gpu(const std::string& name, int number) {
+    Found<std::unique_ptr<Device>> gpu = try_gpu(number);
+    if (const std::string* missing = std::get_if<std::string>(&gpu))
+        throw InputError(fmt::format("--device {}: {}", name, *missing),
+                         "use --device cpu, or --device auto, which takes the best that works");
+    return {std::move(std::get<std::unique_ptr<Device>>(gpu)), fmt::format("asked for by --device {}", name)};
+}
+
+/// The GPU where it works, else the CPU; and why.
+DeviceChoice make_best_device(const DeviceRequest& request) {
+    Found<std::unique_ptr<Device>> gpu = try_gpu(0);
+    if (std::string* missing = std::get_if<std::string>(&gpu))
+        return {make_embree_device(request.threads, choose_width(request.width)), std::move(*missing)};
+    return {std::move(std::get<std::unique_ptr<Device>>(gpu)), "the GPU works; --device cpu takes the CPU"};
+}
+
+std::string names_of(const std::vector<GpuProperties>& gpus) {
+    std::string names;
+    for (std::size_t i = 0; i < gpus.size(); ++i)
+        names += fmt::format("{}{}: {} ({})", i == 0 ? "" : ", ", i, gpus[i].name, gpus[i].architecture);
+    return names;
+}
+
 }  // namespace
 
 DeviceChoice make_device(const DeviceRequest& request) {
-    if (request.name == "hiprt")
-        throw InputError(fmt::format("--device hiprt: {}", kNoHiprt),
-                         "use --device cpu, or --device auto, which takes the best that works");
-    if (request.name != "auto" && request.name != "cpu")
-        throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu or hiprt");
-    DeviceChoice choice;
-    choice.device = make_embree_device(request.threads, choose_width(request.width));
-    choice.why = request.name == "cpu" ? "asked for by --device cpu" : kNoHiprt;
-    return choice;
+    if (const std::optional<int> gpu = gpu_number(request.name))
+        return make_gpu(request.name, *gpu);
+    if (request.name == "auto") return make_best_device(request);
+    if (request.name != "cpu")
+        throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu, hiprt or hiprt:NUMBER");
+    return {make_embree_device(request.threads, choose_width(request.width)), "asked for by --device cpu"};
 }
 
 std::vector<DeviceReport> list_devices() {
     const int width = choose_width(0);
+    const GpuList gpus = list_gpus();
     return {{"cpu",
              fmt::format("{}, {} threads, {} lane{}", processor_name(), std::thread::hardware_concurrency(), width,
                          width == 1 ? "" : "s"),
              true, ""},
-            {"hiprt", "AMD and NVIDIA GPUs through HIPRT and Orochi", false, kNoHiprt}};
+            {"hiprt", gpus.gpus.empty() ? "AMD and NVIDIA GPUs through HIPRT and Orochi" : names_of(gpus.gpus),
+             gpus.missing.empty(), gpus.missing}};
 }
 
 }  // namespace kadr

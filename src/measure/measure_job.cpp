@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "output/atomic_file.h"
-#include "base/cache_folder.h"
 #include "output/frame_writer.h"
 #include "render/frame_identity.h"
 #include "render/output_plan.h"

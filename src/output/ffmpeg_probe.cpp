@@ -8,10 +8,10 @@
 #include <optional>
 #include <sstream>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "output/atomic_file.h"
-#include "base/cache_folder.h"
 #include "output/child_process.h"
 
 namespace kadr {

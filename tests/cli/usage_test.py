@@ -62,7 +62,9 @@ class Usage(ProgramTest):
         self.assertIn("nowhere.yaml", self.refused("render", "nowhere.yaml"))
 
     def test_unusable_device(self):
-        self.assertIn("hiprt", self.refused("render", "ball.yaml", "--device", "hiprt"))
+        gpu = json.loads(self.run_kadr("devices", "--json").out.splitlines()[1])
+        if not gpu["usable"]:
+            self.assertIn(gpu["reason"], self.refused("render", "ball.yaml", "--device", "hiprt"))
         self.assertIn("gpu", self.refused("render", "ball.yaml", "--device", "gpu"))
 
     def test_bad_frames(self):
@@ -96,9 +98,14 @@ class Usage(ProgramTest):
         lines = [json.loads(line) for line in self.run_kadr("devices", "--json").out.splitlines()]
         devices = {device["name"]: device for device in lines}
         self.assertTrue(devices["cpu"]["usable"])
-        self.assertFalse(devices["hiprt"]["usable"])
-        self.assertTrue(devices["hiprt"]["reason"])
+        self.assertNotEqual(devices["hiprt"]["usable"], bool(devices["hiprt"]["reason"]))
         self.assertIn("cpu", self.run_kadr("devices").out)
+        report = json.loads(self.run_kadr("devices", "--verbose", "--json").out.splitlines()[2])
+        self.assertIn(devices["hiprt"]["reason"], report["gpu_needs"][-1])
+        self.assertTrue(report["unproven_on_gpu"])
+        verbose = self.run_kadr("devices", "--verbose").out
+        for line in report["gpu_needs"] + report["unproven_on_gpu"]:
+            self.assertIn(line, verbose)
 
     def test_info(self):
         self.run_kadr("render", self.shot, "--frames", "1")

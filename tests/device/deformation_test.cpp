@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "device/embree/bounds_tree.h"
 #include "device/embree/deforming_meshes.h"
 #include "device/small_scene.h"
+#include "device/tables/bounds_tree.h"
 
 namespace kadr::test {
 namespace {

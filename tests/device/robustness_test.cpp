@@ -132,18 +132,28 @@ TEST(Robustness, CullingAndMirrorsKeepTheFront) {
 
 TEST(Device, NamesAndRefusals) {
     DeviceRequest request;
+    for (const char* name : {"gpu", "hiprt:", "hiprt:first", "hiprt:-1", "hiprt:0,1"}) {
+        request.name = name;
+        EXPECT_THROW(make_device(request), InputError) << name;
+    }
+    EXPECT_EQ(list_devices().size(), 2u);
+}
+
+TEST(Device, WithoutGpuTheReasonIsOneSentence) {
+    const DeviceReport gpu = list_devices()[1];
+    ASSERT_EQ(gpu.name, "hiprt");
+    if (gpu.usable) GTEST_SKIP() << "there is a GPU here";
+    DeviceRequest request;
     request.name = "hiprt";
     try {
         make_device(request);
-        FAIL() << "there is no HIPRT back end";
+        FAIL() << "there is no GPU";
     } catch (const InputError& error) {
-        EXPECT_EQ(error.diagnostics()[0].text(),
-                  "error: --device hiprt: this build has no HIPRT back end yet\n  use --device cpu, or --device auto, "
-                  "which takes the best that works");
+        EXPECT_EQ(error.diagnostics()[0].text(), "error: --device hiprt: " + gpu.reason +
+                                                     "\n  use --device cpu, or --device auto, which takes the best that works");
     }
-    request.name = "gpu";
-    EXPECT_THROW(make_device(request), InputError);
-    EXPECT_EQ(list_devices().size(), 2u);
+    request.name = "auto";
+    EXPECT_EQ(make_device(request).why, gpu.reason);
 }
 
 TEST(Layers, DepthNormalAlbedo) {

@@ -8,8 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "device/embree/bounds_tree.h"
 #include "device/embree/deforming_meshes.h"
+#include "device/tables/bounds_tree.h"
 
 namespace kadr {
 namespace {

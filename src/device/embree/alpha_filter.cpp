@@ -53,10 +53,6 @@ bool stops(const GeometryUser& user, QueryContext& context, unsigned lane, unsig
 
 }  // namespace
 
-bool needs_filter(const kernels::Material& material, bool cull) {
-    return material.alpha_mode != kernels::AlphaMode::opaque || (cull && !material.double_sided);
-}
-
 void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
     const GeometryUser& user = *static_cast<const GeometryUser*>(arguments->geometryUserPtr);
     QueryContext& context = *reinterpret_cast<QueryContext*>(arguments->context);

@@ -5,9 +5,6 @@
 
 namespace kadr {
 
-/// Whether rays have to ask at every hit on this material: partial coverage, or faces to cull.
-bool needs_filter(const kernels::Material& material, bool cull);
-
 /// Lets rays pass where a surface does not cover them: `mask` by its cutoff; `blend` by a hash of the path for closest
 /// hits and by multiplying the transmittance for shadow rays (order does not matter there, so shadows stay free of
 /// noise).

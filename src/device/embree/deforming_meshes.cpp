@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/embree/alpha_filter.h"
+#include "device/tables/material_table.h"
 
 namespace kadr {
 namespace {

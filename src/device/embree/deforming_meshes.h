@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "device/embree/bounds_tree.h"
 #include "device/embree/structure.h"
 #include "device/embree/geometry_user.h"
+#include "device/tables/bounds_tree.h"
 #include "frame/snapshot.h"
 #include "kernels/scene/scene_view.h"
 

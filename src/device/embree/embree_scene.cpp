@@ -9,10 +9,7 @@
 
 #include "base/error.h"
 #include "device/embree/alpha_filter.h"
-#include "device/embree/motion_keys.h"
-#include "kernels/light/light.h"
-#include "kernels/scene/motion.h"
-#include "kernels/texture/texture.h"
+#include "device/tables/motion_keys.h"
 
 namespace kadr {
 namespace {
@@ -30,127 +27,23 @@ void check(RTCDevice device, const char* action) {
     throw RenderError(fmt::format("cannot {}: Embree reports error {}", action, static_cast<int>(error)));
 }
 
-kernels::Vec3f to_float(const glm::dvec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
-
-/// Mean luminance of a texture, as an estimate of what a textured emitter sends out.
-float average_luminance(const kernels::Texture* textures, const kernels::TextureSlot& slot) {
-    if (slot.texture < 0) return 1.0f;
-    constexpr int kSteps = 32;
-    float sum = 0;
-    for (int y = 0; y < kSteps; ++y)
-        for (int x = 0; x < kSteps; ++x) {
-            const kernels::Vec4f t = kernels::sample_texture<float>(
-                textures, slot.texture,
-                {(static_cast<float>(x) + 0.5f) / kSteps, (static_cast<float>(y) + 0.5f) / kSteps}, true);
-            sum += kernels::luminance(kernels::Vec3f{t.x, t.y, t.z});
-        }
-    return sum / (kSteps * kSteps);
-}
-
 const glm::dmat4& fixed_place(const SceneSnapshot& snapshot, const SnapshotInstance& instance) {
     return snapshot.fixed_places[static_cast<std::size_t>(instance.fixed_place)];
 }
 
-bool emits(const kernels::Material& m) { return !m.unlit && kernels::luminance(m.emission) > 0; }
-
-bool has_maps(const kernels::Material& m) {
-    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 ||
-           m.metallic_roughness_texture.texture >= 0 || m.normal_texture.texture >= 0 ||
-           m.emissive_texture.texture >= 0;
-}
-
 }  // namespace
 
-struct EmbreeScene::PackedGeometry {
-    std::vector<kernels::Vertex> vertices;
-    std::vector<kernels::Vec4f> tangents;  ///< empty: the source's
-    std::vector<unsigned> indices;         ///< empty: the source's
-
-    /// A mesh in its own coordinates.
-    explicit PackedGeometry(const GeometryData& source) {
-        allocate(source);
-        for (std::size_t i = 0; i < source.positions.size(); ++i) vertices[i].position = source.positions[i];
-        for (std::size_t i = 0; i < source.normals.size(); ++i) vertices[i].normal = source.normals[i];
-    }
-
-    /// A mesh relative to `origin`.
-    PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin) {
-        const glm::dmat3 linear(world_from_geometry);
-        const glm::dvec3 shift = glm::dvec3(world_from_geometry[3]) - origin;
-        const bool mirrored = glm::determinant(linear) < 0;
-        const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
-        allocate(source);
-        for (std::size_t i = 0; i < source.positions.size(); ++i)
-            vertices[i].position = to_float(linear * to_double(source.positions[i]) + shift);
-        for (std::size_t i = 0; i < source.normals.size(); ++i)
-            vertices[i].normal = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
-        tangents.resize(source.tangents.size());
-        for (std::size_t i = 0; i < tangents.size(); ++i) {
-            const kernels::Vec4f t = source.tangents[i];
-            const glm::dvec3 d = linear * glm::dvec3(t.x, t.y, t.z);
-            const double length = glm::length(d);
-            const kernels::Vec3f v = to_float(length > 0 ? d / length : d);
-            tangents[i] = {v.x, v.y, v.z, mirrored ? -t.w : t.w};
-        }
-        if (!mirrored) return;
-        indices = source.indices;  // a mirror turns the winding round; turn it back, so that the front stays the front
-        for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
-    }
-
-    kernels::Geometry view(const GeometryData& source) const {
-        kernels::Geometry g{};
-        g.vertices = vertices.data();
-        g.vertex_count = static_cast<unsigned>(vertices.size());
-        g.indices = indices.empty() ? source.indices.data() : indices.data();
-        g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
-        if (!source.tangents.empty()) g.tangents = tangents.empty() ? source.tangents.data() : tangents.data();
-        if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
-        if (!source.colors.empty()) g.colors = source.colors.data();
-        return g;
-    }
-
-private:
-    void allocate(const GeometryData& source) {
-        vertices.assign(source.positions.size(), {{0, 0, 0}, {0, 0, 0}, {0, 0}});
-        for (std::size_t i = 0; i < source.uv[0].size(); ++i) vertices[i].uv = source.uv[0][i];
-    }
-};
-
 EmbreeScene::EmbreeScene(RTCDevice device, const Scene& scene, const Image* environment, const BuildSettings& build)
-    : device_(device), scene_(scene), build_(build), upper_(device, build), deforming_(device, scene, build) {
+    : device_(device), scene_(scene), build_(build), materials_(scene), upper_(device, build), deforming_(device, scene, build) {
     geometries_.resize(scene.geometries.size());  // filled in when an instance needs one
     packed_.resize(scene.geometries.size());
     for (const TextureData& t : scene.textures) textures_.push_back(t.view());
-    view_.materials = scene.materials.data();
+    view_.materials = materials_.data();
     view_.textures = textures_.data();
-    if (environment) load_environment(*environment);
+    if (environment) environment_ = EnvironmentTables(*environment);
 }
 
 EmbreeScene::~EmbreeScene() = default;
-
-void EmbreeScene::load_environment(const Image& image) {
-    const std::size_t channels = image.channels.size();
-    environment_texels_.resize(static_cast<std::size_t>(image.width) * image.height);
-    for (std::size_t i = 0; i < environment_texels_.size(); ++i) {
-        const float* p = image.pixels.data() + i * channels;
-        const auto clean = [](float x) { return std::isfinite(x) && x > 0 ? x : 0.0f; };
-        environment_texels_[i] = channels >= 3 ? kernels::Vec3f{clean(p[0]), clean(p[1]), clean(p[2])}
-                                               : kernels::Vec3f{clean(p[0]), clean(p[0]), clean(p[0])};
-    }
-    environment_marginal_.resize(image.height + 1);
-    environment_conditional_.resize(static_cast<std::size_t>(image.height) * (image.width + 1));
-    environment_map_.average_luminance =
-        kernels::build_environment_tables(environment_texels_.data(), image.width, image.height,
-                                          environment_marginal_.data(), environment_conditional_.data());
-    environment_map_.texels = environment_texels_.data();
-    environment_map_.width = image.width;
-    environment_map_.height = image.height;
-    environment_map_.marginal = environment_marginal_.data();
-    environment_map_.conditional = environment_conditional_.data();
-}
 
 void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.settings = snapshot.settings;
@@ -161,7 +54,8 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.camera = snapshot.camera;
     view_.camera.keys = camera_keys_.data();
     view_.camera.key_count = static_cast<int>(camera_keys_.size());
-    const bool same_emission = set_materials(snapshot);
+    const bool same_emission = materials_.set(snapshot);
+    view_.materials = materials_.data();
     const bool same_geometry =
         have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
     structures_ = {};
@@ -194,27 +88,14 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.motions = motions_.data();
     view_.matrices = matrices_.data();
     view_.keys = keys_.data();
-    if (!same_geometry || !same_emission) set_emitters(snapshot);
-    if (!same_geometry) list_shown();
-    set_lights(snapshot);
+    if (!same_geometry || !same_emission) emitters_.set(snapshot, view_);
+    emitters_.fill(view_.lights);
+    if (!same_geometry) materials_.note_shown(instances_, geometries_);
+    lights_.set(snapshot);
+    lights_.fill(view_.lights);
+    fill_environment(snapshot, environment_, view_.lights);
     set_previous(snapshot);
     set_requirements();
-}
-
-/// Points the kernels to the snapshot's materials. How a material covers (its alpha mode, its sides) never changes within
-/// a shot, so structures stay. @return whether everything emits what it did before
-bool EmbreeScene::set_materials(const SceneSnapshot& snapshot) {
-    materials_ = snapshot.materials;
-    view_.materials = materials_.empty() ? scene_.materials.data() : materials_.data();
-    const std::size_t count = materials_.empty() ? scene_.materials.size() : materials_.size();
-    const auto equal = [](const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-    bool same = emissions_.size() == count;
-    emissions_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        same = same && equal(emissions_[i], view_.materials[i].emission);
-        emissions_[i] = view_.materials[i].emission;
-    }
-    return same;
 }
 
 void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
@@ -404,107 +285,9 @@ void EmbreeScene::set_instance(const SceneSnapshot& snapshot, std::size_t index,
         upper_.show(index, mesh, std::span(matrices_).subspan(motion.first, motion.count));
 }
 
-void EmbreeScene::set_emitters(const SceneSnapshot& snapshot) {
-    emissive_triangles_.clear();
-    emissive_cdf_.clear();
-    instance_density_.assign(snapshot.instances.size(), 0.0f);
-    std::map<int, float> texture_means;
-    double total = 0;
-    glm::dvec3 centre(0);
-    std::vector<double> cumulative{0.0};
-    std::vector<std::pair<glm::dvec3, double>> places;
-    for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
-        const kernels::Material& material = view_.materials[snapshot.instances[i].material];
-        if (!emits(material) || snapshot.instances[i].mask == 0) continue;
-        const int texture = material.emissive_texture.texture;
-        if (!texture_means.count(texture))
-            texture_means[texture] = average_luminance(textures_.data(), material.emissive_texture);
-        const double strength = kernels::luminance(material.emission) * texture_means[texture];
-        if (!(strength > 0)) continue;
-        instance_density_[i] = static_cast<float>(strength);
-        const kernels::Geometry& geometry = geometries_[instances_[i].geometry];
-        const kernels::Affine at = kernels::transform_at(view_, static_cast<unsigned>(i), 0.0f);
-        const auto place = [&](unsigned vertex) {
-            const glm::dvec3 p = to_double(geometry.vertices[vertex].position);
-            glm::dvec3 r;
-            for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
-            return r;
-        };
-        const bool varies = texture >= 0 || geometry.key_count > 1 || motions_[i].kind != kernels::InstanceMotion::Kind::still;
-        for (unsigned t = 0; t < geometry.triangle_count; ++t) {
-            const glm::dvec3 a = place(geometry.indices[3 * t]), b = place(geometry.indices[3 * t + 1]),
-                             c = place(geometry.indices[3 * t + 2]);
-            const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
-            if (!(power > 0)) continue;
-            emissive_triangles_.push_back({to_float(a), to_float(b - a), to_float(c - a), material.emission, 0,
-                                           static_cast<unsigned>(i), t, varies ? 1u : 0u});
-            total += power;
-            cumulative.push_back(total);
-            places.emplace_back((a + b + c) / 3.0, power);
-            centre += places.back().first * power;
-        }
-    }
-    kernels::LightSet& lights = view_.lights;
-    lights.triangle_count = static_cast<int>(emissive_triangles_.size());
-    lights.emitted_power = static_cast<float>(total);
-    if (total > 0) {
-        for (double c : cumulative) emissive_cdf_.push_back(static_cast<float>(c / total));
-        for (float& d : instance_density_) d = static_cast<float>(d / total);
-        for (kernels::EmissiveTriangle& t : emissive_triangles_) t.density = instance_density_[t.instance];
-        centre /= total;
-        double radius_squared = 1e-12;
-        for (const auto& [p, power] : places) radius_squared += power / total * glm::dot(p - centre, p - centre);
-        lights.emitter_centre = to_float(centre);
-        lights.emitter_radius_squared = static_cast<float>(radius_squared);
-    }
-    lights.triangles = emissive_triangles_.data();
-    lights.triangle_cdf = emissive_cdf_.data();
-    lights.instance_density = instance_density_.data();
-}
-
-void EmbreeScene::set_lights(const SceneSnapshot& snapshot) {
-    light_keys_ = snapshot.light_keys;
-    light_first_.clear();
-    light_count_.clear();
-    kernels::LightSet& lights = view_.lights;
-    lights.visible_count = 0;
-    for (const bool with_surface : {true, false})
-        for (const LightKeys& light : snapshot.lights) {
-            if (kernels::is_delta(light_keys_[light.first]) == with_surface) continue;
-            light_first_.push_back(static_cast<int>(light.first));
-            light_count_.push_back(static_cast<int>(light.count));
-            lights.visible_count += with_surface ? 1 : 0;
-        }
-    lights.keys = light_keys_.data();
-    lights.first = light_first_.data();
-    lights.key_count = light_count_.data();
-    lights.count = static_cast<int>(light_first_.size());
-    lights.environment = snapshot.environment.radiance;
-    lights.environment_visible = snapshot.environment.visible;
-    lights.has_map = !environment_texels_.empty();
-    lights.map = environment_map_;
-    lights.map.factor = snapshot.environment.radiance;
-    lights.map.rotate_rad = snapshot.environment.rotate_rad;
-    lights.map.average_luminance *= kernels::luminance(snapshot.environment.radiance);
-}
-
-/// What is shown with which materials, without repetitions.
-void EmbreeScene::list_shown() {
-    std::vector<bool> seen(materials_.empty() ? scene_.materials.size() : materials_.size(), false);
-    shows_colors_ = false;
-    for (const kernels::Instance& instance : instances_) {
-        seen[instance.material] = true;
-        shows_colors_ = shows_colors_ || geometries_[instance.geometry].colors;
-    }
-    shown_materials_.clear();
-    for (unsigned material = 0; material < seen.size(); ++material)
-        if (seen[material]) shown_materials_.push_back(material);
-}
-
 void EmbreeScene::set_requirements() {
     requirements_ = 0;
-    const auto maps = [&](unsigned material) { return has_maps(view_.materials[material]); };
-    if (shows_colors_ || std::any_of(shown_materials_.begin(), shown_materials_.end(), maps)) requirements_ |= kernels::requirement::kMaps;
+    if (materials_.shows_maps()) requirements_ |= kernels::requirement::kMaps;
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
     if (deforming_.bends()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;

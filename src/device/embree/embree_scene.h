@@ -11,6 +11,11 @@
 #include "device/embree/embree_api.h"
 #include "device/embree/geometry_user.h"
 #include "device/embree/instance_level.h"
+#include "device/tables/emitter_tables.h"
+#include "device/tables/environment_tables.h"
+#include "device/tables/light_tables.h"
+#include "device/tables/material_table.h"
+#include "device/tables/packed_geometry.h"
 #include "film/film.h"
 #include "frame/snapshot.h"
 #include "kernels/scene/scene_view.h"
@@ -41,9 +46,6 @@ public:
     const DeformingMeshes& deforming() const { return deforming_; }
 
 private:
-    struct PackedGeometry;  ///< vertices as the kernels fetch them, in mesh coordinates or flattened
-
-    void load_environment(const Image& image);
     std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
     void build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
     void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first);
@@ -51,11 +53,7 @@ private:
     void set_instance(const SceneSnapshot& snapshot, std::size_t index, RTCScene mesh);
     RTCScene mesh_scene(unsigned geometry, unsigned material);
     EmbreeGeometryHandle make_triangles(const kernels::Geometry& geometry, unsigned material);
-    bool set_materials(const SceneSnapshot& snapshot);
-    void set_lights(const SceneSnapshot& snapshot);
-    void set_emitters(const SceneSnapshot& snapshot);
     void set_previous(const SceneSnapshot& snapshot);
-    void list_shown();
     void set_requirements();
 
     /// Entries of the tables that are taken.
@@ -77,22 +75,17 @@ private:
     // Tables that the view points into.
     std::vector<kernels::Geometry> geometries_;
     std::vector<kernels::Texture> textures_;
-    std::vector<kernels::Material> materials_;  ///< of the snapshot; empty: the scene's
-    std::vector<kernels::Vec3f> emissions_;     ///< [material] of the frame before
+    MaterialTable materials_;
     std::vector<kernels::Instance> instances_;
     std::vector<kernels::InstanceMotion> motions_;
     std::vector<kernels::Affine> matrices_;
     std::vector<kernels::TransformKey> keys_;
-    std::vector<kernels::Light> light_keys_;
-    std::vector<int> light_first_, light_count_;
-    std::vector<kernels::EmissiveTriangle> emissive_triangles_;
-    std::vector<float> emissive_cdf_, instance_density_;
+    LightTables lights_;
+    EmitterTables emitters_;
+    EnvironmentTables environment_;
     std::vector<kernels::CameraKey> camera_keys_;
     std::vector<kernels::Affine> previous_matrices_;
     kernels::CameraKey previous_camera_key_{};
-    std::vector<kernels::Vec3f> environment_texels_;
-    std::vector<float> environment_marginal_, environment_conditional_;
-    kernels::EnvironmentMap environment_map_{};
     kernels::SceneView view_{};
 
     std::vector<std::unique_ptr<PackedGeometry>>
@@ -108,8 +101,6 @@ private:
     std::vector<bool> flattened_;  ///< of the frame before
     std::vector<std::uint32_t> flat_ids_;  ///< of what is flattened
     StillPart still_;
-    std::vector<unsigned> shown_materials_;  ///< of instances_, each once
-    bool shows_colors_ = false;              ///< some mesh has colours at its vertices
     glm::dvec3 flat_origin_{0};
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0, emitter_key_ = 0;

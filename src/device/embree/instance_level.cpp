@@ -1,8 +1,20 @@
 #include "device/embree/instance_level.h"
 
-#include "device/embree/motion_keys.h"
-
 namespace kadr {
+namespace {
+
+/// Embree's quaternion form of a key: translation * rotation * (scale with shear above the diagonal).
+RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key) {
+    RTCQuaternionDecomposition q;
+    rtcInitQuaternionDecomposition(&q);
+    rtcQuaternionDecompositionSetQuaternion(&q, key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
+    rtcQuaternionDecompositionSetScale(&q, key.scale[0], key.scale[1], key.scale[2]);
+    rtcQuaternionDecompositionSetSkew(&q, key.shear[0], key.shear[1], key.shear[2]);
+    rtcQuaternionDecompositionSetTranslation(&q, key.translation[0], key.translation[1], key.translation[2]);
+    return q;
+}
+
+}  // namespace
 
 void InstanceLevel::resize(std::size_t count) {
     for (std::size_t i = count; i < slots_.size(); ++i)

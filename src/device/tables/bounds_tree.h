@@ -8,7 +8,7 @@
 
 namespace kadr {
 
-/// How much worse a structure gets when its triangles move but its tree stays: a stand-in for Embree's own tree, which
+/// How much worse a structure gets when its triangles move but its tree stays: a stand-in for the device's own tree, which
 /// cannot be asked.
 ///
 /// Triangles in the order of a space-filling curve at the time of building; groups of eight, groups of eight groups and

@@ -1,4 +1,4 @@
-#include "device/embree/motion_keys.h"
+#include "device/tables/motion_keys.h"
 
 #include <cmath>
 
@@ -54,22 +54,13 @@ bool is_linear(const MotionFrames& motion, std::size_t instance) {
 
 kernels::Affine matrix_at(const MotionFrames& motion, std::size_t instance, std::size_t frame) {
     const std::size_t at = motion.headers[instance].first_frame + frame;
-    return motion.types[instance] == FrameType::srt ? kernels::compose(key_of(motion.srt[at])) : matrix_of(motion.matrices[at]);
+    return motion.types[instance] == FrameType::srt ? kernels::compose(key_of(motion.srt[at]))
+                                                    : matrix_of(motion.matrices[at]);
 }
 
 kernels::TransformKey key_at(const MotionFrames& motion, std::size_t instance, std::size_t frame) {
     const std::size_t at = motion.headers[instance].first_frame + frame;
     return motion.types[instance] == FrameType::srt ? key_of(motion.srt[at]) : key_of(motion.matrices[at]);
-}
-
-RTCQuaternionDecomposition to_embree(const kernels::TransformKey& key) {
-    RTCQuaternionDecomposition q;
-    rtcInitQuaternionDecomposition(&q);
-    rtcQuaternionDecompositionSetQuaternion(&q, key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
-    rtcQuaternionDecompositionSetScale(&q, key.scale[0], key.scale[1], key.scale[2]);
-    rtcQuaternionDecompositionSetSkew(&q, key.shear[0], key.shear[1], key.shear[2]);
-    rtcQuaternionDecompositionSetTranslation(&q, key.translation[0], key.translation[1], key.translation[2]);
-    return q;
 }
 
 }  // namespace kadr

@@ -1,4 +1,4 @@
-#include "device/embree/bounds_tree.h"
+#include "device/tables/bounds_tree.h"
 
 #include <algorithm>
 #include <cmath>

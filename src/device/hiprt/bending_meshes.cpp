@@ -1,0 +1,116 @@
+#include "device/hiprt/bending_meshes.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "device/hiprt/rigid_meshes.h"
+
+namespace kadr {
+namespace {
+
+/// Growth of the tree's cost beyond which a structure is built anew: as on the CPU, where it was measured; what rays of
+/// a GPU pay no GPU has shown yet.
+constexpr double kMostGrowth = 1.05;
+
+void refuse_blur(const GeometryData& geometry) {
+    throw InputError(fmt::format("--device hiprt: the mesh {} bends while the shutter is open", geometry.name),
+                     "on GPUs bending meshes are not blurred yet; use --device cpu, or a shutter of 0 deg");
+}
+
+}  // namespace
+
+const BendingMeshes::Entry& BendingMeshes::find(const SceneSnapshot& snapshot, int deformed) const {
+    return entries_.at(snapshot.deformed[static_cast<std::size_t>(deformed)]->number);
+}
+
+void BendingMeshes::set_frame(const SceneSnapshot& snapshot, const std::vector<bool>& filtered) {
+    built_ = updated_ = kept_ = 0;
+    for (std::size_t i = 0; i < snapshot.deformed.size(); ++i) {
+        const std::shared_ptr<const DeformedMesh>& mesh = snapshot.deformed[i];
+        const GeometryData& source = scene_.geometries[mesh->geometry];
+        if (source.indices.empty()) continue;
+        if (mesh->key_count > 1) refuse_blur(source);
+        check_mesh_size(source);
+        update(entries_[mesh->number], mesh, filtered[i]);
+    }
+}
+
+void BendingMeshes::forget(const SceneSnapshot& snapshot) {
+    std::set<std::uint32_t> numbers;
+    for (const auto& mesh : snapshot.deformed) numbers.insert(mesh->number);
+    std::erase_if(entries_, [&](const auto& entry) { return !numbers.count(entry.first); });
+}
+
+void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, bool filtered) {
+    const std::vector<std::uint32_t>& indices = scene_.geometries[mesh->geometry].indices;
+    const bool same_kind = entry.mesh && entry.filtered == filtered;
+    if (same_kind && entry.mesh->version == mesh->version) {
+        ++kept_;
+        return;
+    }
+    entry.mesh.reset();  // if anything fails below, the entry is made anew
+    const bool refit = same_kind && entry.bounds.cost(mesh->vertices, indices) <= kMostGrowth * entry.cost_when_built;
+    copy_vertices(entry, *mesh);
+    const StructureJob job{entry.data.build_input(host_of(*mesh), filtered), &entry.structure};
+    if (refit) {
+        builder_.update(job, build_options(StructureQuality::fast, filtered));
+    } else {
+        builder_.build({&job, 1}, build_options(StructureQuality::fast, filtered));
+        entry.bounds.order(mesh->vertices, indices);
+        entry.cost_when_built = entry.bounds.cost(mesh->vertices, indices);
+    }
+    ++(refit ? updated_ : built_);
+    entry.filtered = filtered;
+    entry.mesh = mesh;
+}
+
+/// The triangles and what else keeps its shape stay where they are.
+void BendingMeshes::copy_vertices(Entry& entry, const DeformedMesh& mesh) {
+    if (entry.data.vertices.count() != mesh.vertices.size()) {
+        entry.data = GpuMesh(builder_.memory(), uploads_, host_of(mesh));
+        return;
+    }
+    uploads_.add(entry.data.vertices, mesh.vertices);
+    if (entry.data.tangents.count() == mesh.tangents.size()) uploads_.add(entry.data.tangents, mesh.tangents);
+}
+
+void BendingMeshes::set_previous(const SceneSnapshot& snapshot) {
+    for (std::size_t i = 0; i < snapshot.deformed.size(); ++i) {
+        const auto entry = entries_.find(snapshot.deformed[i]->number);
+        if (entry == entries_.end()) continue;
+        DeviceBuffer<kernels::Vec3f>& previous = entry->second.data.previous;
+        if (!snapshot.previous) {
+            previous = {};
+            continue;
+        }
+        const std::vector<kernels::Vec3f>& positions = snapshot.previous->deformed[i];
+        previous.reserve(builder_.memory(), positions.size(), MemoryUse::vertices);
+        uploads_.add(previous, positions);
+    }
+}
+
+kernels::Geometry BendingMeshes::host_of(const DeformedMesh& mesh) const {
+    const GeometryData& source = scene_.geometries[mesh.geometry];
+    kernels::Geometry g{};
+    g.vertices = mesh.vertices.data();
+    g.vertex_count = static_cast<unsigned>(source.positions.size());
+    g.key_count = 1;
+    g.indices = source.indices.data();
+    g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
+    if (!mesh.tangents.empty()) g.tangents = mesh.tangents.data();
+    if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
+    if (!source.colors.empty()) g.colors = source.colors.data();
+    return g;
+}
+
+kernels::Geometry BendingMeshes::host(const SceneSnapshot& snapshot, int deformed) const {
+    return host_of(*snapshot.deformed[static_cast<std::size_t>(deformed)]);
+}
+
+kernels::Geometry BendingMeshes::device(const SceneSnapshot& snapshot, int deformed) const {
+    return find(snapshot, deformed).data.view(host(snapshot, deformed));
+}
+
+}  // namespace kadr

@@ -1,0 +1,70 @@
+#include "device/hiprt/gpu_access.h"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "base/cache_folder.h"
+#include "base/error.h"
+#include "device/hiprt/gpu_probe.h"
+#include "device/hiprt/hiprt_device.h"
+#include "device/hiprt/hiprt_library.h"
+#include "device/hiprt/kernel_cache.h"
+#include "device/hiprt/orochi_runtime.h"
+
+namespace kadr {
+namespace {
+
+constexpr const char* kNoneFound =
+    "the driver finds no GPU; is one built in, and may this machine or container use it?";
+
+std::filesystem::path kernel_cache() {
+    const std::optional<std::filesystem::path> folder = cache_folder();
+    return folder ? prepare_kernel_cache(*folder / "kernels") : std::filesystem::path();
+}
+
+/// @throws InputError, RenderError  with what went wrong on the way
+std::unique_ptr<Device> start(const GpuProbe& probe, int number) {
+    // HIPRT reads it when it compiles.
+    setenv("HIPRT_PATH", probe.hiprt_headers.c_str(), 1);
+    HiprtParts parts;
+    parts.api = HiprtLibrary::open(probe.hiprt_library).api();
+    parts.runtime = make_orochi_runtime(probe.vendor, number);
+    parts.kernel_folder = probe.kernel_folder;
+    parts.cache_folder = kernel_cache();
+    return make_hiprt_device(std::move(parts));
+}
+
+}  // namespace
+
+GpuList list_gpus() {
+    const GpuProbe probe = probe_gpu(this_machine(), built_with_orochi());
+    if (!probe.complete()) return {{}, probe.missing()};
+    GpuList list;
+    try {
+        const int count = count_gpus(probe.vendor);
+        for (int i = 0; i < count; ++i) list.gpus.push_back(make_orochi_runtime(probe.vendor, i)->properties());
+    } catch (const RenderError& error) {
+        return {{}, error.what()};
+    }
+    if (list.gpus.empty()) list.missing = kNoneFound;
+    return list;
+}
+
+Found<std::unique_ptr<Device>> try_gpu(int number) {
+    const GpuProbe probe = probe_gpu(this_machine(), built_with_orochi());
+    if (!probe.complete()) return probe.missing();
+    try {
+        const int count = count_gpus(probe.vendor);
+        if (count == 0) return kNoneFound;
+        if (number >= count)
+            return fmt::format("there is no GPU {}, only 0 to {}; see kadr devices", number, count - 1);
+        return start(probe, number);
+    } catch (const InputError& error) {
+        return error.diagnostics().front().found;
+    } catch (const RenderError& error) {
+        return error.what();
+    }
+}
+
+}  // namespace kadr

@@ -1,0 +1,79 @@
+#include "device/hiprt/trace_kernels.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "device/hiprt/hiprt_error.h"
+#include "kernels/gpu/entry_points.h"
+
+namespace kadr {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of all files under a folder: their paths from there and what they hold.
+std::string hash_folder(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    Hasher hasher;
+    for (const fs::path& file : files) {
+        hasher.add(file.lexically_relative(folder).generic_string());
+        hasher.add(hash_file(file).hex());
+    }
+    return hasher.finish().hex();
+}
+
+std::vector<const char*> pointers_to(const std::vector<std::string>& texts) {
+    std::vector<const char*> pointers;
+    for (const std::string& text : texts) pointers.push_back(text.c_str());
+    return pointers;
+}
+
+}  // namespace
+
+KernelSource TraceKernels::source_of(const KernelNeed& need) {
+    if (hash_.empty()) hash_ = hash_folder(folder_ / "kernels");
+    const kernels::EntryPoint entry = kernels::entry_point(need.integrator);
+    KernelSource source;
+    source.function = entry.name;
+    source.text = fmt::format("#define KADR_REQUIREMENTS {}u\n#include \"{}\"\n", need.requirements, entry.header);
+    source.options = {"-I" + folder_.string()};  // HIPRT itself asks for C++17
+    if (context_.runtime().properties().vendor == GpuVendor::amd)
+        source.options.insert(source.options.end(), std::begin(kernels::kHipOptions), std::end(kernels::kHipOptions));
+    else
+        source.options.insert(source.options.end(), std::begin(kernels::kCudaOptions), std::end(kernels::kCudaOptions));
+    Hasher hasher;
+    hasher.add(hash_);
+    hasher.add(source.text);
+    for (const std::string& option : source.options) hasher.add(option);
+    hasher.add(static_cast<std::int64_t>(hiprt::kApiVersion));
+    source.module =
+        fmt::format("{}_{}{}_{}", entry.name, need.requirements, need.filters ? "f" : "", hasher.finish().hex());
+    return source;
+}
+
+hiprt::Function TraceKernels::get(const KernelNeed& need) {
+    const auto known = compiled_.find(need);
+    if (known != compiled_.end()) return known->second;
+    const KernelSource source = source_of(need);
+    const char* function_name = source.function.c_str();
+    std::vector<const char*> options = pointers_to(source.options);
+    hiprt::FunctionNames names{nullptr, kernels::kFilterFunction};
+    const std::uint32_t types = need.filters ? 1 : 0;
+    hiprt::Function function = nullptr;
+    check(context_.api().build_trace_kernels(context_.handle(), 1, &function_name, source.text.c_str(),
+                                             source.module.c_str(), 0, nullptr, nullptr,
+                                             static_cast<std::uint32_t>(options.size()), options.data(), types, types,
+                                             need.filters ? &names : nullptr, &function, nullptr, true),
+          fmt::format("compile the kernel {} for requirement set {} (what HIPRT printed above says why)",
+                      source.function, need.requirements));
+    compiled_[need] = function;
+    return function;
+}
+
+}  // namespace kadr

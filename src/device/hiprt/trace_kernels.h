@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "device/hiprt/hiprt_handles.h"
+#include "kernels/scene/scene_types.h"
+
+namespace kadr {
+
+/// Which kernel a frame needs.
+struct KernelNeed {
+    kernels::IntegratorKind integrator = kernels::IntegratorKind::path;
+    unsigned requirements = 0;  ///< set of kernels::requirement bits: exactly these are compiled
+    bool filters = false;       ///< rays ask our filter function at hits on some geometry
+    auto operator<=>(const KernelNeed&) const = default;
+};
+
+/// What HIPRT is given to compile a kernel.
+struct KernelSource {
+    std::string text, module, function;
+    std::vector<std::string> options;
+};
+
+/// Kernels, compiled by HIPRT when first needed, from our sources on the user's machine. HIPRT keeps what it compiled
+/// in its cache folder and, by the module's name alone, in memory: so the name holds a hash of all our sources and
+/// options.
+class TraceKernels {
+public:
+    /// @param folder  holds kernels/
+    TraceKernels(HiprtContext& context, std::filesystem::path folder) : context_(context), folder_(std::move(folder)) {}
+
+    /// @throws RenderError  when it does not compile; HIPRT has printed why
+    hiprt::Function get(const KernelNeed& need);
+    /// What get() hands to HIPRT.
+    KernelSource source_of(const KernelNeed& need);
+
+private:
+    HiprtContext& context_;
+    std::filesystem::path folder_;
+    std::string hash_;  ///< of all files of kernels/; empty: not read yet
+    std::map<KernelNeed, hiprt::Function> compiled_;
+};
+
+}  // namespace kadr

@@ -1,0 +1,50 @@
+#include "device/tables/material_table.h"
+
+#include <algorithm>
+
+namespace kadr {
+namespace {
+
+bool has_maps(const kernels::Material& m) {
+    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 ||
+           m.metallic_roughness_texture.texture >= 0 || m.normal_texture.texture >= 0 ||
+           m.emissive_texture.texture >= 0;
+}
+
+bool equal(const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+}  // namespace
+
+bool MaterialTable::set(const SceneSnapshot& snapshot) {
+    materials_ = snapshot.materials;
+    bool same = emissions_.size() == count();
+    emissions_.resize(count());
+    for (std::size_t i = 0; i < count(); ++i) {
+        same = same && equal(emissions_[i], data()[i].emission);
+        emissions_[i] = data()[i].emission;
+    }
+    return same;
+}
+
+void MaterialTable::note_shown(std::span<const kernels::Instance> instances,
+                               std::span<const kernels::Geometry> geometries) {
+    std::vector<bool> seen(count(), false);
+    shows_colors_ = false;
+    for (const kernels::Instance& instance : instances) {
+        seen[instance.material] = true;
+        shows_colors_ = shows_colors_ || geometries[instance.geometry].colors;
+    }
+    shown_.clear();
+    for (unsigned material = 0; material < seen.size(); ++material)
+        if (seen[material]) shown_.push_back(material);
+}
+
+bool MaterialTable::shows_maps() const {
+    return shows_colors_ || std::any_of(shown_.begin(), shown_.end(), [&](unsigned m) { return has_maps(data()[m]); });
+}
+
+bool needs_filter(const kernels::Material& material, bool cull) {
+    return material.alpha_mode != kernels::AlphaMode::opaque || (cull && !material.double_sided);
+}
+
+}  // namespace kadr

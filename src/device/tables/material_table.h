@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "frame/snapshot.h"
+#include "kernels/scene/scene_view.h"
+#include "scene/scene.h"
+
+namespace kadr {
+
+/// The materials of a frame, and what they ask of the kernels.
+class MaterialTable {
+public:
+    explicit MaterialTable(const Scene& scene) : scene_(scene) {}
+
+    /// Takes the snapshot's materials. How a material covers (its alpha mode, its sides) never changes within a shot,
+    /// so structures stay. @return whether everything emits what it did before
+    bool set(const SceneSnapshot& snapshot);
+    /// Notes what is shown: which materials, and whether some mesh has colours at its vertices.
+    void note_shown(std::span<const kernels::Instance> instances, std::span<const kernels::Geometry> geometries);
+
+    const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
+    std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }
+    /// Whether what is shown needs requirement::kMaps.
+    bool shows_maps() const;
+
+private:
+    const Scene& scene_;
+    std::vector<kernels::Material> materials_;  ///< of the snapshot; empty: the scene's
+    std::vector<kernels::Vec3f> emissions_;     ///< [material] of the frame before
+    std::vector<unsigned> shown_;               ///< materials, each once
+    bool shows_colors_ = false;
+};
+
+/// Whether rays have to ask at every hit on this material: partial coverage, or faces to cull.
+bool needs_filter(const kernels::Material& material, bool cull);
+
+}  // namespace kadr

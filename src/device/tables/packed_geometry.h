@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "kernels/scene/scene_types.h"
+#include "scene/scene.h"
+
+namespace kadr {
+
+/// Vertices of a mesh as the kernels fetch them.
+struct PackedGeometry {
+    std::vector<kernels::Vertex> vertices;
+    std::vector<kernels::Vec4f> tangents;  ///< empty: the source's
+    std::vector<unsigned> indices;         ///< empty: the source's
+
+    /// In the mesh's own coordinates.
+    explicit PackedGeometry(const GeometryData& source);
+    /// Flattened: relative to `origin`.
+    PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin);
+
+    /// Points to what is here and to what is the source's.
+    kernels::Geometry view(const GeometryData& source) const;
+
+private:
+    void allocate(const GeometryData& source);
+};
+
+}  // namespace kadr

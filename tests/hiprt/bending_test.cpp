@@ -1,0 +1,161 @@
+// Meshes that bend, on the GPU: their vertices are copied, their structures updated or built anew.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "device/small_scene.h"
+#include "fake_gpu.h"
+
+namespace kadr::test {
+namespace {
+
+/// A square that bends, shown twice, and a device that shows it frame by frame.
+struct Bending {
+    FakeGpu gpu;
+    SmallScene s;
+    std::unique_ptr<Device> device;
+
+    Bending() {
+        const unsigned square = s.add_mesh(unit_square());
+        for (int i = 0; i < 2; ++i) {
+            s.add_instance(square, material({1, 1, 1}, 0, 1), place({i, 0, 0}), false);
+            s.snapshot.instances.edit(static_cast<std::size_t>(i)).deformed = 0;
+        }
+        device = gpu.make();
+        device->load(s.scene, nullptr);
+    }
+    /// @param reach  how far the third corner is
+    void show(std::uint64_t version, float reach, unsigned keys = 1) {
+        auto mesh = std::make_shared<DeformedMesh>();
+        mesh->geometry = 0;
+        mesh->number = 7;
+        mesh->version = version;
+        mesh->key_count = keys;
+        for (unsigned k = 0; k < keys; ++k)
+            for (const kernels::Vec3f& p : s.scene.geometries[0].positions)
+                mesh->vertices.push_back({p, {0, 0, 1}, {0, 0}});
+        mesh->vertices[2].position = {reach, reach, 0};
+        s.snapshot.deformed = {mesh};
+        ++s.snapshot.geometry_key;
+        device->set_frame(s.snapshot);
+    }
+    void render() {
+        Film film(32, 32, {});
+        film.clear();
+        device->render({}, film);
+    }
+    std::string complaints() {
+        device.reset();
+        return gpu.complaints();
+    }
+    StructureCounts counts() const { return device->statistics().structures; }
+};
+
+TEST(BendingOnGpu, OneStructureForAllCopiesUpdatedWhileItIsGood) {
+    Bending b;
+    b.show(1, 1);
+    EXPECT_EQ(b.counts(), (StructureCounts{2, 0, 0}));  // the mesh, and all instances
+    EXPECT_EQ(b.gpu.hiprt.geometries.size(), 1u);
+    EXPECT_EQ(b.gpu.hiprt.geometries.begin()->second.options.flags, hiprt::build_flag::kFast);
+    b.show(2, 1.0001f);
+    EXPECT_EQ(b.counts(), (StructureCounts{1, 1, 0}));
+    b.render();
+    const kernels::SceneView& view = b.gpu.launches.back().scene;
+    EXPECT_EQ(view.geometries[view.instances[1].geometry].vertices[2].position.x, 1.0001f);
+    b.show(2, 1.0001f);
+    EXPECT_EQ(b.counts(), (StructureCounts{1, 0, 1}));
+    b.show(3, 300);
+    EXPECT_EQ(b.gpu.hiprt.geometries.begin()->second.input.mesh.triangle_count, 2u);
+    EXPECT_EQ(b.complaints(), "");
+}
+
+TEST(BendingOnGpu, AStructureThatItsVerticesHaveLeftIsBuiltAnew) {
+    Bending b;
+    b.s.scene.geometries[0] = unit_sphere(8);  // enough triangles to make a bad tree of
+    b.device->load(b.s.scene, nullptr);
+    const auto show = [&](std::uint64_t version, float shift) {
+        auto mesh = std::make_shared<DeformedMesh>();
+        mesh->number = 7;
+        mesh->version = version;
+        for (const kernels::Vec3f& p : b.s.scene.geometries[0].positions) mesh->vertices.push_back({p, p, {0, 0}});
+        for (std::size_t i = 0; i < mesh->vertices.size(); i += 2) mesh->vertices[i].position.x += shift;
+        b.s.snapshot.deformed = {mesh};
+        ++b.s.snapshot.geometry_key;
+        b.device->set_frame(b.s.snapshot);
+    };
+    show(1, 0);
+    show(2, 1e-4f);
+    EXPECT_EQ(b.counts(), (StructureCounts{1, 1, 0}));
+    show(3, 5);
+    EXPECT_EQ(b.counts(), (StructureCounts{2, 0, 0}));
+    EXPECT_EQ(b.complaints(), "");
+}
+
+TEST(BendingOnGpu, ThoseShownNoMoreAreForgotten) {
+    Bending b;
+    b.show(1, 1);
+    b.s.snapshot.deformed.clear();
+    for (std::size_t i = 0; i < 2; ++i) b.s.snapshot.instances.edit(i).deformed = -1;
+    ++b.s.snapshot.geometry_key;
+    b.device->set_frame(b.s.snapshot);
+    EXPECT_EQ(b.gpu.hiprt.geometries.size(), 1u);
+    EXPECT_EQ(b.gpu.hiprt.geometries.begin()->second.options.flags, hiprt::build_flag::kHighQuality);
+    EXPECT_EQ(b.complaints(), "");
+}
+
+TEST(BendingOnGpu, AFrameThatFailedLeavesNoVerticesBehind) {
+    Bending b;
+    b.show(1, 1);
+    const std::size_t before = b.gpu.runtime->calls.size();
+    b.show(2, 1.0001f);
+    // The same again, but HIPRT fails once the new vertices are on their way.
+    b.show(1, 1);
+    std::size_t update = before;
+    while (b.gpu.runtime->calls[update] != "build_geometries") ++update;
+    b.gpu.runtime->failing_call = static_cast<int>(b.gpu.runtime->calls.size() + update - before);
+    EXPECT_THROW(b.show(2, 1.0001f), RenderError);
+    b.show(1, 1);
+    b.render();
+    const kernels::SceneView& view = b.gpu.launches.back().scene;
+    EXPECT_EQ(view.geometries[view.instances[1].geometry].vertices[2].position.x, 1.0f);
+    EXPECT_EQ(b.complaints(), "");
+}
+
+TEST(BendingOnGpu, BlurIsRefusedByName) {
+    Bending b;
+    try {
+        b.show(1, 1, 2);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(
+            error.diagnostics()[0].text(),
+            "error: --device hiprt: the mesh square bends while the shutter is open\n  on GPUs bending meshes are not "
+            "blurred yet; use --device cpu, or a shutter of 0 deg");
+    }
+    EXPECT_EQ(b.complaints(), "");
+}
+
+TEST(BendingOnGpu, PlacesOneFrameEarlier) {
+    Bending b;
+    b.s.snapshot.render_origin = {0, 0, 100};
+    b.s.snapshot.previous.emplace();
+    b.s.snapshot.previous->world_from_geometry = {place({5, 0, 0}), place({6, 0, 0})};
+    b.s.snapshot.previous->deformed = {{{9, 0, 0}, {9, 1, 0}, {9, 2, 0}, {9, 3, 0}}};
+    b.s.snapshot.previous->camera = b.s.snapshot.camera_keys[0];
+    b.s.snapshot.previous->camera.lens_radius = 3;
+    b.show(1, 1);
+    b.render();
+    const kernels::SceneView& view = b.gpu.launches.back().scene;
+    EXPECT_EQ(view.previous_matrices[1].m[0][3], 6.0f);
+    EXPECT_EQ(view.previous_matrices[1].m[2][3], -100.0f);
+    EXPECT_EQ(view.geometries[view.instances[0].geometry].previous[3].y, 3.0f);
+    EXPECT_EQ(view.previous_camera.keys[0].lens_radius, 3.0f);
+    b.s.snapshot.previous.reset();
+    b.show(2, 1);
+    b.render();
+    EXPECT_EQ(b.gpu.launches.back().scene.previous_matrices, nullptr);
+    EXPECT_EQ(b.complaints(), "");
+}
+
+}  // namespace
+}  // namespace kadr::test

@@ -1,0 +1,137 @@
+#include "fake_gpu.h"
+
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace kadr::test {
+
+using namespace kernels;
+
+FakeGpu::FakeGpu() {
+    runtime->on_launch = [this](const std::string& function, const std::byte* argument) {
+        LaunchParams params;
+        std::memcpy(static_cast<void*>(&params), argument, sizeof params);
+        return run(function, params);
+    };
+}
+
+std::unique_ptr<Device> FakeGpu::make() {
+    HiprtParts parts;
+    parts.runtime = runtime;
+    parts.api = FakeHiprt::api();
+    parts.kernel_folder = KADR_SOURCE_DIR;
+    return make_hiprt_device(std::move(parts));
+}
+
+std::string FakeGpu::complaints() const {
+    std::string text;
+    for (const std::string& fault : runtime->faults) text += "fault: " + fault + "\n";
+    for (const std::string& leak : runtime->leaks()) text += "leak: " + leak + "\n";
+    for (const std::string& leak : hiprt.leaks()) text += "leak: " + leak + "\n";
+    return text;
+}
+
+double FakeGpu::run(const std::string& function, const LaunchParams& params) {
+    if (function != "kadr_path" && function != "kadr_direct")
+        runtime->fault("launch: not a kernel of ours: " + function);
+    check_addresses(params);
+    launches.push_back(params);
+    std::int64_t samples = 0;
+    const auto width = static_cast<std::size_t>(params.scene.settings.width);
+    for (int y = params.y0; y < params.y1; ++y)
+        for (int x = params.x0; x < params.x1; ++x) {
+            const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+            if (params.active && params.active[pixel] == 0) continue;
+            for (int s = params.first_sample; s < params.first_sample + params.sample_count; ++s, ++samples) {
+                FilmBeauty& beauty = params.film.beauty[pixel];
+                beauty.r += static_cast<float>(x);
+                beauty.g += static_cast<float>(y);
+                beauty.b += static_cast<float>(s);
+                beauty.alpha += 1;
+                ++params.film.samples[pixel];
+                if (params.film.weights) params.film.weights[pixel] += 0.5f;
+                if (params.film.surface) params.film.surface[pixel].depth += 2;
+            }
+        }
+    params.counters->samples += static_cast<unsigned long long>(samples);
+    params.counters->rays += static_cast<unsigned long long>(3 * samples);
+    return static_cast<double>(samples) * seconds_a_sample;
+}
+
+void FakeGpu::check_addresses(const LaunchParams& params) {
+    const auto width = static_cast<std::size_t>(params.scene.settings.width);
+    const auto rows = static_cast<std::size_t>(params.y1 - params.y0),
+               first = static_cast<std::size_t>(params.y0) * width;
+    expect(params.film.beauty + first, rows * width, "the film");
+    expect(params.film.samples + first, rows * width, "the film's samples");
+    if (params.film.weights) expect(params.film.weights + first, rows * width, "the film's weights");
+    if (params.film.surface) expect(params.film.surface + first, rows * width, "the film's layers");
+    if (params.active)
+        expect(params.active, width * static_cast<std::size_t>(params.scene.settings.height), "active pixels");
+    expect(params.filter, 1, "the filter");
+    expect(params.shutter, 1, "the shutter");
+    expect(params.counters, 1, "the counters");
+    if (!params.top) return;
+    const auto scene = hiprt.scenes.find(static_cast<hiprt::Scene>(const_cast<void*>(params.top)));
+    if (scene == hiprt.scenes.end() || !scene->second.built)
+        return runtime->fault("launch: not a scene that was built");
+    for (const auto& [handle, geometry] : hiprt.geometries)
+        if (geometry.input.geometry_type != hiprt::kInvalidValue && !params.functions)
+            runtime->fault("launch: no function table");
+    expect(params.instance_of, scene->second.instances.size(), "the table of instances");
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < scene->second.instances.size(); ++i)
+        most = std::max<std::size_t>(most, params.instance_of[i] + 1);
+    check_scene(params.scene, most);
+}
+
+void FakeGpu::check_scene(const SceneView& scene, std::size_t instance_count) {
+    expect(scene.instances, instance_count, "instances");
+    expect(scene.motions, instance_count, "motions");
+    for (std::size_t i = 0; i < instance_count; ++i) {
+        const InstanceMotion& motion = scene.motions[i];
+        if (motion.kind == InstanceMotion::Kind::still)
+            expect(scene.matrices + motion.first, 1, "matrices");
+        else if (motion.kind == InstanceMotion::Kind::keys)
+            expect(scene.keys + motion.first, motion.count, "keys");
+        else
+            runtime->fault("a linear motion: HIPRT has none");
+        expect(scene.geometries + scene.instances[i].geometry, 1, "geometries");
+        expect(scene.materials + scene.instances[i].material, 1, "materials");
+        check_geometry(scene.geometries[scene.instances[i].geometry]);
+        const int texture = scene.materials[scene.instances[i].material].base_color_texture.texture;
+        if (texture < 0) continue;
+        expect(scene.textures + texture, 1, "textures");
+        const Texture& t = scene.textures[texture];
+        expect(static_cast<const std::uint8_t*>(t.texels),
+               static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height) * 4, "texels");
+    }
+    if (scene.previous_matrices) expect(scene.previous_matrices, instance_count, "previous matrices");
+    expect(scene.camera.keys, static_cast<std::size_t>(scene.camera.key_count), "camera keys");
+    const LightSet& lights = scene.lights;
+    expect(lights.first, static_cast<std::size_t>(lights.count), "lights");
+    expect(lights.key_count, static_cast<std::size_t>(lights.count), "lights");
+    for (int i = 0; i < lights.count; ++i)
+        expect(lights.keys + lights.first[i], static_cast<std::size_t>(lights.key_count[i]), "light keys");
+    expect(lights.triangles, static_cast<std::size_t>(lights.triangle_count), "emissive triangles");
+    if (lights.triangle_count > 0)
+        expect(lights.triangle_cdf, static_cast<std::size_t>(lights.triangle_count) + 1, "emissive cdf");
+    if (lights.triangle_count > 0) expect(lights.instance_density, instance_count, "instance density");
+    if (!lights.has_map) return;
+    const auto w = static_cast<std::size_t>(lights.map.width), h = static_cast<std::size_t>(lights.map.height);
+    expect(lights.map.texels, w * h, "environment");
+    expect(lights.map.marginal, h + 1, "environment");
+    expect(lights.map.conditional, h * (w + 1), "environment");
+}
+
+void FakeGpu::check_geometry(const Geometry& geometry) {
+    expect(geometry.vertices, geometry.vertex_count, "vertices");
+    expect(geometry.indices, std::size_t{3} * geometry.triangle_count, "indices");
+    if (geometry.tangents) expect(geometry.tangents, geometry.vertex_count, "tangents");
+    if (geometry.uv1) expect(geometry.uv1, geometry.vertex_count, "second texture coordinates");
+    if (geometry.colors) expect(geometry.colors, geometry.vertex_count, "colours");
+    if (geometry.previous) expect(geometry.previous, geometry.vertex_count, "previous positions");
+}
+
+}  // namespace kadr::test

@@ -1,0 +1,537 @@
+#include "fake_hiprt.h"
+
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "frame/decompose.h"
+
+namespace kadr::test {
+namespace {
+
+using hiprt::Error;
+
+/// The one fake there is: contexts point to the runtime, and the library has functions only.
+FakeHiprt* g_fake = nullptr;
+
+std::uintptr_t number_of(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
+
+template <class T>
+std::vector<T> read(const void* from, std::size_t count) {
+    std::vector<T> values(count);
+    std::memcpy(values.data(), from, count * sizeof(T));
+    return values;
+}
+
+struct Pose {
+    glm::dquat rotation;
+    glm::dvec3 scale, shear;
+    float time;
+    bool finite;
+};
+
+bool all_finite(const float* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!std::isfinite(values[i])) return false;
+    return true;
+}
+
+Pose pose_of(const kernels::FrameSrt& f) {
+    Pose pose{};
+    pose.finite = all_finite(&f.axis[0], 11);
+    pose.time = f.time;
+    const glm::dvec3 axis(f.axis[0], f.axis[1], f.axis[2]);
+    pose.rotation = glm::length(axis) > 0 ? glm::angleAxis(static_cast<double>(f.angle), glm::normalize(axis))
+                                          : glm::dquat(1, 0, 0, 0);
+    pose.scale = {f.scale[0], f.scale[1], f.scale[2]};
+    if (glm::length(axis) == 0 && f.angle != 0) pose.finite = false;  // HIPRT makes NaN of it
+    if (std::abs(f.angle) > 3.1415928f) pose.finite = false;
+    return pose;
+}
+
+Pose pose_of(const kernels::FrameMatrix& f) {
+    Pose pose{};
+    pose.finite = all_finite(&f.matrix[0][0], 12) && std::isfinite(f.time);
+    pose.time = f.time;
+    if (!pose.finite) return pose;
+    glm::dmat4 m(1);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) m[column][row] = f.matrix[row][column];
+    if (glm::determinant(glm::dmat3(m)) == 0) return pose;  // scale 0 is reported
+    const Decomposition d = decompose(m);
+    pose.rotation = d.rotation;
+    pose.scale = d.scale;
+    pose.shear = d.shear;
+    return pose;
+}
+
+}  // namespace
+
+struct FakeEntryPoints {
+    static Error create_context(std::uint32_t version, const hiprt::ContextCreationInput& input,
+                                hiprt::Context& context) {
+        FakeHiprt& f = *g_fake;
+        if (f.runtime_.begin_call("create_context")) return Error::internal;
+        if (version != hiprt::kApiVersion) return Error::invalid_api_version;
+        f.runtime_.expect_current("create_context");
+        if (input.context != f.runtime_.native_context()) f.fault("create_context: not the runtime's context");
+        const bool amd = f.runtime_.vendor == GpuVendor::amd;
+        if (input.device_type != (amd ? hiprt::DeviceType::amd : hiprt::DeviceType::nvidia))
+            f.fault("create_context: not the runtime's vendor");
+        if (f.has_context) f.fault("create_context: there is one already");
+        f.has_context = true;
+        context = reinterpret_cast<hiprt::Context>(&f);
+        return Error::success;
+    }
+
+    /// The fake of a context; a call without one is a fault.
+    static FakeHiprt& of(hiprt::Context context, const char* call) {
+        if (context != reinterpret_cast<hiprt::Context>(g_fake) || !g_fake->has_context)
+            g_fake->fault(std::string(call) + ": no such context");
+        g_fake->runtime_.expect_current(call);
+        return *g_fake;
+    }
+
+    static Error destroy_context(hiprt::Context context) {
+        FakeHiprt& f = of(context, "destroy_context");
+        const bool fails = f.runtime_.begin_call("destroy_context");
+        for (const std::string& leak : f.leaks())
+            if (leak != "a context") f.fault("destroy_context: there is still " + leak);
+        f.has_context = false;
+        f.modules.clear();
+        return fails ? Error::internal : Error::success;
+    }
+
+    static Error set_log_level(hiprt::Context context, std::uint32_t level) {
+        FakeHiprt& f = of(context, "set_log_level");
+        if (f.runtime_.begin_call("set_log_level")) return Error::internal;
+        f.log_level = level;
+        return Error::success;
+    }
+
+    static Error set_cache_path(hiprt::Context context, const char* path) {
+        FakeHiprt& f = of(context, "set_cache_path");
+        if (f.runtime_.begin_call("set_cache_path")) return Error::internal;
+        f.cache_path = path;
+        return Error::success;
+    }
+
+    static Error create_geometries(hiprt::Context context, std::uint32_t count, const hiprt::GeometryBuildInput* inputs,
+                                   hiprt::BuildOptions options, hiprt::Geometry** created) {
+        FakeHiprt& f = of(context, "create_geometries");
+        if (f.runtime_.begin_call("create_geometries")) return Error::internal;
+        if (count == 0 || !inputs || !created) return Error::invalid_parameter;
+        f.check_options(options);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            f.check_mesh(inputs[i], options);
+            const std::size_t bytes =
+                256 + inputs[i].mesh.triangle_count *
+                          f.bytes_per_triangle_of[options.flags & hiprt::build_flag::kQualityMask];
+            const DeviceAddress address = f.take(bytes);
+            if (address == 0) {
+                for (std::uint32_t k = 0; k < i; ++k) {
+                    f.give_back(*created[k]);
+                    f.geometries.erase(*created[k]);
+                    *created[k] = nullptr;
+                }
+                return Error::internal;  // as HIPRT does
+            }
+            *created[i] = reinterpret_cast<hiprt::Geometry>(address);
+            f.geometries[*created[i]] = {inputs[i], options, bytes, false, false, 0, {}};
+        }
+        return Error::success;
+    }
+
+    static Error destroy_geometry(hiprt::Context context, hiprt::Geometry geometry) {
+        FakeHiprt& f = of(context, "destroy_geometry");
+        const bool fails = f.runtime_.begin_call("destroy_geometry");
+        const auto found = f.geometries.find(geometry);
+        if (found == f.geometries.end()) {
+            f.fault("destroy_geometry: no such geometry, or destroyed before");
+            return Error::invalid_parameter;
+        }
+        for (const auto& [handle, scene] : f.scenes)
+            for (const hiprt::Instance& instance : scene.instances)
+                if (scene.built && instance.geometry == geometry) {
+                    f.fault("destroy_geometry: a scene still shows it");
+                    break;
+                }
+        if (f.runtime_.is_pending({number_of(geometry), found->second.bytes}))
+            f.fault("destroy_geometry: work on it is pending");
+        f.give_back(geometry);
+        f.geometries.erase(found);
+        return fails ? Error::internal : Error::success;
+    }
+
+    static Error geometries_temporary_size(hiprt::Context context, std::uint32_t count,
+                                           const hiprt::GeometryBuildInput* inputs, hiprt::BuildOptions options,
+                                           std::size_t& bytes) {
+        FakeHiprt& f = of(context, "geometries_temporary_size");
+        if (f.runtime_.begin_call("geometries_temporary_size")) return Error::internal;
+        if (count == 0 || !inputs) return Error::invalid_parameter;
+        f.check_options(options);
+        bytes = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            f.check_mesh(inputs[i], options);
+            const std::size_t own = 64 + inputs[i].mesh.triangle_count * f.temporary_per_primitive;
+            f.geometry_sizes_[{inputs[i].mesh.vertices, inputs[i].mesh.triangle_count}] = {options, own};
+            bytes = std::max(bytes, own);
+        }
+        return Error::success;
+    }
+
+    static Error build_geometries(hiprt::Context context, hiprt::BuildOperation operation, std::uint32_t count,
+                                  const hiprt::GeometryBuildInput* inputs, hiprt::BuildOptions options,
+                                  hiprt::DevicePointer temporary, hiprt::Stream stream, hiprt::Geometry* geometries) {
+        FakeHiprt& f = of(context, "build_geometries");
+        if (f.runtime_.begin_call("build_geometries")) return Error::internal;
+        if (count == 0 || !inputs || !geometries) return Error::invalid_parameter;
+        f.check_options(options);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            f.check_mesh(inputs[i], options);
+            const auto found = f.geometries.find(geometries[i]);
+            if (found == f.geometries.end()) {
+                f.fault("build_geometries: no such geometry");
+                return Error::invalid_parameter;
+            }
+            FakeHiprt::GeometryRecord& record = found->second;
+            const hiprt::TriangleMesh &mesh = inputs[i].mesh, &created_for = record.input.mesh;
+            if (!(record.options == options)) f.fault("build_geometries: other flags than it was created with");
+            if (mesh.triangle_count != created_for.triangle_count)
+                f.fault("build_geometries: another size than it was created for");
+            std::vector<Range> uses = {
+                {number_of(geometries[i]), record.bytes},
+                {number_of(mesh.vertices), std::size_t{mesh.vertex_count} * mesh.vertex_stride},
+                {number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride}};
+            if (operation == hiprt::BuildOperation::build) {
+                const auto size = f.geometry_sizes_.find({mesh.vertices, mesh.triangle_count});
+                if (size == f.geometry_sizes_.end() || !(size->second.options == options))
+                    f.fault("build_geometries: its temporary size was never asked for with these flags");
+                else {
+                    f.runtime_.expect_device({number_of(temporary), size->second.bytes},
+                                             "build_geometries' temporary buffer");
+                    uses.push_back({number_of(temporary), size->second.bytes});
+                }
+            }
+            f.runtime_.enqueue(stream, std::move(uses), [&f, geometry = geometries[i], input = inputs[i], operation] {
+                f.run_geometry_build(geometry, input, operation);
+            });
+        }
+        return Error::success;
+    }
+
+    static Error compact_geometries(hiprt::Context context, std::uint32_t count, hiprt::Stream stream,
+                                    hiprt::Geometry* in, hiprt::Geometry** out) {
+        FakeHiprt& f = of(context, "compact_geometries");
+        if (f.runtime_.begin_call("compact_geometries")) return Error::internal;
+        if (count == 0 || !in || !out) return Error::invalid_parameter;
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (f.runtime_.is_pending({number_of(in[i]), 1})) f.fault("compact_geometries: it is still being built");
+        f.runtime_.run_all(stream);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto found = f.geometries.find(in[i]);
+            if (found == f.geometries.end() || !found->second.built) {
+                f.fault("compact_geometries: it was never built");
+                return Error::invalid_parameter;
+            }
+            FakeHiprt::GeometryRecord record = found->second;
+            record.bytes = record.bytes / 2 + 1;
+            record.compacted = true;
+            const DeviceAddress address = f.take(record.bytes);
+            if (address == 0) return Error::internal;
+            f.give_back(in[i]);
+            f.geometries.erase(found);
+            *out[i] = reinterpret_cast<hiprt::Geometry>(address);
+            f.geometries[*out[i]] = record;
+        }
+        return Error::success;
+    }
+
+    static Error create_scene(hiprt::Context context, const hiprt::SceneBuildInput& input, hiprt::BuildOptions options,
+                              hiprt::Scene& created) {
+        FakeHiprt& f = of(context, "create_scene");
+        if (f.runtime_.begin_call("create_scene")) return Error::internal;
+        f.check_options(options);
+        if (input.instance_count == 0) f.fault("create_scene: no instances");
+        if (input.instance_count > hiprt::kMostInstances) return Error::internal;
+        const std::size_t bytes = 256 + input.instance_count * f.bytes_per_instance + input.frame_count * 64;
+        const DeviceAddress address = f.take(bytes);
+        if (address == 0) return Error::internal;
+        created = reinterpret_cast<hiprt::Scene>(address);
+        f.scenes[created].created_for = input;
+        f.scenes[created].options = options;
+        f.scenes[created].bytes = bytes;
+        return Error::success;
+    }
+
+    static Error destroy_scene(hiprt::Context context, hiprt::Scene scene) {
+        FakeHiprt& f = of(context, "destroy_scene");
+        const bool fails = f.runtime_.begin_call("destroy_scene");
+        const auto found = f.scenes.find(scene);
+        if (found == f.scenes.end()) {
+            f.fault("destroy_scene: no such scene, or destroyed before");
+            return Error::invalid_parameter;
+        }
+        if (f.runtime_.is_pending({number_of(scene), found->second.bytes}))
+            f.fault("destroy_scene: work on it is pending");
+        f.give_back(scene);
+        f.scenes.erase(found);
+        return fails ? Error::internal : Error::success;
+    }
+
+    static Error scene_temporary_size(hiprt::Context context, const hiprt::SceneBuildInput& input,
+                                      hiprt::BuildOptions options, std::size_t& bytes) {
+        FakeHiprt& f = of(context, "scene_temporary_size");
+        if (f.runtime_.begin_call("scene_temporary_size")) return Error::internal;
+        f.check_options(options);
+        bytes = 64 + input.instance_count * f.temporary_per_primitive;
+        f.scene_sizes_[{input.instance_count, input.frame_count}] = {options, bytes};
+        return Error::success;
+    }
+
+    static Error build_scene(hiprt::Context context, hiprt::BuildOperation operation,
+                             const hiprt::SceneBuildInput& input, hiprt::BuildOptions options,
+                             hiprt::DevicePointer temporary, hiprt::Stream stream, hiprt::Scene scene) {
+        FakeHiprt& f = of(context, "build_scene");
+        if (f.runtime_.begin_call("build_scene")) return Error::internal;
+        f.check_options(options);
+        const auto found = f.scenes.find(scene);
+        if (found == f.scenes.end()) {
+            f.fault("build_scene: no such scene");
+            return Error::invalid_parameter;
+        }
+        const FakeHiprt::SceneRecord& record = found->second;
+        if (operation != hiprt::BuildOperation::build) f.fault("build_scene: an update is a race for static instances");
+        if (!(record.options == options)) f.fault("build_scene: other flags than it was created with");
+        if (record.created_for.instance_count != input.instance_count ||
+            record.created_for.frame_count != input.frame_count || record.created_for.frame_type != input.frame_type)
+            f.fault("build_scene: another size than it was created for");
+        const auto size = f.scene_sizes_.find({input.instance_count, input.frame_count});
+        if (size == f.scene_sizes_.end() || !(size->second.options == options)) {
+            f.fault("build_scene: its temporary size was never asked for with these flags");
+            return Error::invalid_parameter;
+        }
+        const std::size_t frame = input.frame_type == hiprt::FrameType::srt ? 48 : 64;
+        std::vector<Range> uses = {{number_of(scene), record.bytes},
+                                   {number_of(temporary), size->second.bytes},
+                                   {number_of(input.instances), input.instance_count * sizeof(hiprt::Instance)},
+                                   {number_of(input.headers), input.instance_count * sizeof(kernels::TransformHeader)},
+                                   {number_of(input.frames), input.frame_count * frame},
+                                   {number_of(input.masks), input.instance_count * sizeof(std::uint32_t)}};
+        bool right = true;
+        for (const Range& range : uses) right = f.runtime_.expect_device(range, "build_scene") && right;
+        if (!right) return Error::invalid_parameter;
+        f.runtime_.enqueue(stream, std::move(uses), [&f, scene, input] { f.run_scene_build(scene, input); });
+        return Error::success;
+    }
+
+    static Error create_function_table(hiprt::Context context, std::uint32_t geometry_types, std::uint32_t ray_types,
+                                       hiprt::FunctionTable& created) {
+        FakeHiprt& f = of(context, "create_function_table");
+        if (f.runtime_.begin_call("create_function_table")) return Error::internal;
+        if (geometry_types == 0 || ray_types == 0) return Error::invalid_parameter;
+        const DeviceAddress address = f.take(64);
+        if (address == 0) return Error::internal;
+        created = reinterpret_cast<hiprt::FunctionTable>(address);
+        f.tables.insert(created);
+        return Error::success;
+    }
+
+    static Error set_function_table(hiprt::Context context, hiprt::FunctionTable table, std::uint32_t geometry_type,
+                                    std::uint32_t ray_type, hiprt::FunctionData) {
+        FakeHiprt& f = of(context, "set_function_table");
+        if (f.runtime_.begin_call("set_function_table")) return Error::internal;
+        if (f.tables.count(table) == 0 || geometry_type != 0 || ray_type != 0)
+            f.fault("set_function_table: no such entry");
+        return Error::success;
+    }
+
+    static Error destroy_function_table(hiprt::Context context, hiprt::FunctionTable table) {
+        FakeHiprt& f = of(context, "destroy_function_table");
+        const bool fails = f.runtime_.begin_call("destroy_function_table");
+        if (f.tables.erase(table) == 0) {
+            f.fault("destroy_function_table: no such table");
+            return Error::invalid_parameter;
+        }
+        f.give_back(table);
+        return fails ? Error::internal : Error::success;
+    }
+
+    static Error build_trace_kernels(hiprt::Context context, std::uint32_t function_count, const char** names,
+                                     const char* source, const char* module_name, std::uint32_t header_count,
+                                     const char**, const char**, std::uint32_t option_count, const char** options,
+                                     std::uint32_t geometry_types, std::uint32_t ray_types,
+                                     hiprt::FunctionNames* function_names, hiprt::Function* functions, hiprt::Module*,
+                                     bool) {
+        FakeHiprt& f = of(context, "build_trace_kernels");
+        if (f.runtime_.begin_call("build_trace_kernels")) return Error::internal;
+        if (function_count == 0 || !names || !source || !module_name || !functions) return Error::invalid_parameter;
+        if (header_count != 0) f.fault("build_trace_kernels: headers come from folders");
+        if ((f.log_level & hiprt::log_level::kErrors) == 0)
+            f.fault("build_trace_kernels: compile errors would not be seen");
+        if (geometry_types * ray_types != 0 && !function_names) f.fault("build_trace_kernels: functions without names");
+        FakeHiprt::ModuleRecord module{source, {}};
+        for (std::uint32_t i = 0; i < option_count; ++i) module.options.emplace_back(options[i]);
+        // The library keeps modules by their name alone.
+        const auto [at, is_new] = f.modules.emplace(module_name, module);
+        if (!is_new && (at->second.source != module.source || at->second.options != module.options))
+            f.fault("build_trace_kernels: one module name for two sources");
+        for (std::uint32_t i = 0; i < function_count; ++i) functions[i] = f.runtime_.make_function(names[i]);
+        return Error::success;
+    }
+};
+
+FakeHiprt::FakeHiprt(RecordingRuntime& runtime) : runtime_(runtime) { g_fake = this; }
+FakeHiprt::~FakeHiprt() { g_fake = nullptr; }
+
+hiprt::Api FakeHiprt::api() {
+    using E = FakeEntryPoints;
+    return {E::create_context,
+            E::destroy_context,
+            E::set_log_level,
+            E::set_cache_path,
+            E::create_geometries,
+            E::destroy_geometry,
+            E::geometries_temporary_size,
+            E::build_geometries,
+            E::compact_geometries,
+            E::create_scene,
+            E::destroy_scene,
+            E::scene_temporary_size,
+            E::build_scene,
+            E::create_function_table,
+            E::set_function_table,
+            E::destroy_function_table,
+            E::build_trace_kernels};
+}
+
+std::vector<std::string> FakeHiprt::leaks() const {
+    std::vector<std::string> found;
+    for (std::size_t i = 0; i < geometries.size(); ++i) found.push_back("a geometry");
+    for (std::size_t i = 0; i < scenes.size(); ++i) found.push_back("a scene");
+    for (std::size_t i = 0; i < tables.size(); ++i) found.push_back("a function table");
+    if (has_context) found.push_back("a context");
+    return found;
+}
+
+/// Memory for a structure, outside the count of calls: it is a part of the call that asks.
+DeviceAddress FakeHiprt::take(std::size_t bytes) {
+    const int failing = std::exchange(runtime_.failing_call, -1);
+    DeviceAddress address = 0;
+    if (runtime_.allocate(bytes, address).kind != GpuResult::Kind::success) address = 0;
+    runtime_.calls.pop_back();
+    runtime_.failing_call = failing;
+    return address;
+}
+
+void FakeHiprt::give_back(const void* structure) {
+    const int failing = std::exchange(runtime_.failing_call, -1);
+    (void)runtime_.release(number_of(structure));
+    runtime_.calls.pop_back();
+    runtime_.failing_call = failing;
+}
+
+void FakeHiprt::check_options(const hiprt::BuildOptions& options) {
+    const std::uint32_t quality = options.flags & hiprt::build_flag::kQualityMask;
+    if (quality > hiprt::build_flag::kHighQuality) fault("a tree to import is not what we build");
+    if ((options.flags & ~(hiprt::build_flag::kQualityMask | hiprt::build_flag::kNoSpatialSplits)) != 0)
+        fault("unknown build flags");
+    if (options.batch_max_primitives != 0) fault("the batch builder costs a compilation");
+}
+
+void FakeHiprt::check_mesh(const hiprt::GeometryBuildInput& input, const hiprt::BuildOptions& options) {
+    const hiprt::TriangleMesh& mesh = input.mesh;
+    if (input.type != hiprt::PrimitiveType::triangle_mesh) fault("a mesh is not of triangles");
+    if (mesh.triangle_count == 0 || mesh.vertex_count == 0) fault("a mesh is empty");
+    if (mesh.vertex_stride < 12 || mesh.vertex_stride % 4 != 0 || mesh.triangle_stride != 12)
+        fault("a mesh has wrong strides");
+    if (std::uint64_t{mesh.vertex_count} * mesh.vertex_stride > hiprt::kMostVertexBytes)
+        fault("a vertex buffer is 4 GiB or more");
+    runtime_.expect_device({number_of(mesh.vertices), std::size_t{mesh.vertex_count} * mesh.vertex_stride}, "vertices");
+    runtime_.expect_device({number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride},
+                           "indices");
+    if (input.geometry_type != hiprt::kInvalidValue) {
+        if (input.geometry_type != 0) fault("a geometry type beyond the function table");
+        if ((options.flags & hiprt::build_flag::kNoSpatialSplits) == 0)
+            fault("spatial splits let a filter see a triangle more than once");
+    }
+}
+
+void FakeHiprt::run_geometry_build(hiprt::Geometry handle, const hiprt::GeometryBuildInput& input,
+                                   hiprt::BuildOperation operation) {
+    GeometryRecord& record = geometries.at(handle);
+    const hiprt::TriangleMesh& mesh = input.mesh;
+    const std::vector<std::uint32_t> indices = read<std::uint32_t>(mesh.indices, std::size_t{3} * mesh.triangle_count);
+    for (const std::uint32_t index : indices)
+        if (index >= mesh.vertex_count) return fault("an index is beyond the vertices");
+    for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        float p[3];
+        std::memcpy(p, static_cast<const std::byte*>(mesh.vertices) + std::size_t{i} * mesh.vertex_stride, sizeof p);
+        if (!all_finite(p, 3)) return fault("a vertex is not finite");
+    }
+    if (operation == hiprt::BuildOperation::update) {
+        if (!record.built) return fault("a geometry is updated before it was built");
+        if (indices != record.indices) return fault("a geometry is updated with other triangles");
+        ++record.updates;
+    }
+    record.built = true;
+    record.indices = indices;
+    record.input = input;
+}
+
+void FakeHiprt::run_scene_build(hiprt::Scene handle, const hiprt::SceneBuildInput& input) {
+    SceneRecord& scene = scenes.at(handle);
+    scene.instances = read<hiprt::Instance>(input.instances, input.instance_count);
+    scene.headers = read<kernels::TransformHeader>(input.headers, input.instance_count);
+    scene.masks = read<std::uint32_t>(input.masks, input.instance_count);
+    if (input.frame_type == hiprt::FrameType::srt)
+        scene.srt = read<kernels::FrameSrt>(input.frames, input.frame_count);
+    else
+        scene.matrices = read<kernels::FrameMatrix>(input.frames, input.frame_count);
+    for (const hiprt::Instance& instance : scene.instances) {
+        if (instance.type != hiprt::InstanceType::geometry) fault("an instance of something else than a geometry");
+        const auto found = geometries.find(instance.geometry);
+        if (found == geometries.end() || !found->second.built) fault("an instance of a geometry that was not built");
+    }
+    for (const kernels::TransformHeader& header : scene.headers) {
+        if (header.frame_count == 0 || header.first_frame + header.frame_count > input.frame_count) {
+            fault("a transform header beyond the frames");
+            continue;
+        }
+        check_frames(scene, header, input.frame_type);
+    }
+    scene.built = true;
+}
+
+void FakeHiprt::check_frames(const SceneRecord& scene, const kernels::TransformHeader& header, hiprt::FrameType type) {
+    const auto pose = [&](unsigned i) {
+        return type == hiprt::FrameType::srt ? pose_of(scene.srt[header.first_frame + i])
+                                             : pose_of(scene.matrices[header.first_frame + i]);
+    };
+    Pose before{};
+    for (unsigned i = 0; i < header.frame_count; ++i) {
+        const Pose now = pose(i);
+        if (!now.finite) return fault("a frame is not finite, or its angle is beyond pi");
+        if (now.scale.x == 0 || now.scale.y == 0 || now.scale.z == 0) return fault("a frame has a zero scale");
+        if (now.time < 0 || now.time > 1) return fault("the time of a frame is outside [0, 1]");
+        if (header.frame_count > 1 && glm::length(now.shear) > 1e-4 * glm::length(now.scale))
+            return fault("a moving instance is sheared: HIPRT's inverse is wrong");
+        if (i > 0) {
+            if (!(now.time > before.time)) return fault("times of frames do not increase");
+            const double c =
+                std::min(1.0, std::abs(glm::dot(glm::normalize(now.rotation), glm::normalize(before.rotation))));
+            const double degrees = glm::degrees(2 * std::acos(c));
+            if (degrees > most_degrees_a_step)
+                return fault(fmt::format("a turn of {:.3f} degrees between two frames", degrees));
+            for (int axis = 0; axis < 3; ++axis)
+                if (now.scale[axis] * before.scale[axis] < 0) return fault("a scale passes through zero");
+        }
+        before = now;
+    }
+    if (header.frame_count > 1 && (pose(0).time != 0 || before.time != 1)) fault("frames do not span the shutter");
+}
+
+}  // namespace kadr::test

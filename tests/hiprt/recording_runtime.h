@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "device/hiprt/gpu_runtime.h"
+
+namespace kadr::test {
+
+/// A stretch of memory.
+struct Range {
+    std::uintptr_t begin = 0;
+    std::size_t bytes = 0;
+    bool overlaps(const Range& other) const { return begin < other.begin + other.bytes && other.begin < begin + bytes; }
+};
+
+/// A GPU that has none: its memory is the host's, work on streams waits until somebody waits for it, and every call is
+/// checked for what a real one would punish with a crash or a wrong image: memory that is not there, is too small or
+/// was freed, frees while work is pending, threads that have no context, leaks. What is wrong is listed in `faults`.
+///
+/// Any call can be made to fail, those of the fake HIPRT (fake_hiprt.h) among them: they are counted together.
+class RecordingRuntime final : public GpuRuntime {
+public:
+    ~RecordingRuntime() override;
+
+    // What a test sets.
+    int failing_call = -1;  ///< number of the call that fails, from 0
+    GpuResult::Kind failure = GpuResult::Kind::failure;
+    std::size_t capacity = std::size_t{1} << 30;  ///< bytes of device memory
+    GpuVendor vendor = GpuVendor::nvidia;
+    /// Runs a kernel. `argument`: a copy of the launch's one argument. @return seconds that it took
+    std::function<double(const std::string& function, const std::byte* argument)> on_launch;
+
+    // What a test reads.
+    std::vector<std::string> calls;   ///< all, in order
+    std::vector<std::string> faults;  ///< empty: everything was right
+    std::vector<double> launch_s;     ///< how long each launch took
+    std::size_t in_use() const { return in_use_; }
+    std::size_t most_in_use() const { return most_in_use_; }
+    std::vector<std::string> leaks() const;  ///< what is still there
+    std::size_t count(const std::string& call) const;
+
+    // For the fake HIPRT.
+    /// Notes a call. @return whether it is to fail
+    bool begin_call(const std::string& name);
+    void fault(const std::string& text) { faults.push_back(text); }
+    /// Whether a range lies in live device memory; a fault otherwise.
+    bool expect_device(const Range& range, const std::string& what);
+    void enqueue(GpuStreamHandle stream, std::vector<Range> uses, std::function<void()> run);
+    bool is_pending(const Range& range) const;
+    bool is_idle() const;  ///< nothing is pending
+    void run_all(GpuStreamHandle stream);
+    GpuFunctionHandle make_function(const std::string& name);
+    void expect_current(const std::string& call);
+
+    GpuProperties properties() const override { return {"a recording", "fake_1", vendor, capacity}; }
+    GpuResult make_current() override;
+    GpuResult memory(std::size_t& free_bytes, std::size_t& total_bytes) override;
+    void* native_context() const override { return const_cast<RecordingRuntime*>(this); }
+    int native_device() const override { return 0; }
+    GpuResult allocate(std::size_t bytes, DeviceAddress& address) override;
+    GpuResult release(DeviceAddress address) override;
+    GpuResult allocate_pinned(std::size_t bytes, void*& memory) override;
+    GpuResult release_pinned(void* memory) override;
+    GpuResult create_stream(GpuStreamHandle& stream) override;
+    GpuResult destroy_stream(GpuStreamHandle stream) override;
+    GpuResult synchronize(GpuStreamHandle stream) override;
+    GpuResult synchronize_all() override;
+    GpuResult upload(DeviceAddress to, const void* from, std::size_t bytes, GpuStreamHandle stream) override;
+    GpuResult download(void* to, DeviceAddress from, std::size_t bytes, GpuStreamHandle stream) override;
+    GpuResult fill(DeviceAddress to, std::uint8_t value, std::size_t bytes, GpuStreamHandle stream) override;
+    GpuResult create_event(GpuEventHandle& event) override;
+    GpuResult destroy_event(GpuEventHandle event) override;
+    GpuResult record(GpuEventHandle event, GpuStreamHandle stream) override;
+    GpuResult wait_for(GpuEventHandle event) override;
+    GpuResult query(GpuEventHandle event) override;
+    GpuResult elapsed(GpuEventHandle begin, GpuEventHandle end, double& seconds) override;
+    GpuResult launch(GpuFunctionHandle function, const LaunchSize& size, std::span<void* const> arguments,
+                     GpuStreamHandle stream) override;
+
+private:
+    struct Block {
+        std::unique_ptr<std::byte[]> memory;
+        std::size_t bytes = 0;
+        bool freed = false;
+    };
+    using Blocks = std::map<std::uintptr_t, Block>;
+    struct Work {
+        std::vector<Range> uses;
+        std::function<void()> run;
+    };
+    struct Stream {
+        std::deque<Work> work;
+    };
+    struct Event {
+        Stream* stream = nullptr;
+        bool past = false;
+        double at_s = 0;
+    };
+    struct Function {
+        std::string name;
+    };
+
+    GpuResult failed() const { return {failure, "a failure that the test asked for"}; }
+    static const Block* find(const Blocks& blocks, const Range& range);
+    bool expect_pinned(const Range& range, const std::string& what);
+    GpuResult release_from(Blocks& blocks, std::uintptr_t address, const char* what);
+    Stream* stream_of(GpuStreamHandle stream, const char* call);
+    Event* event_of(GpuEventHandle event, const char* call);
+    static void run_one(Stream& stream);
+
+    Blocks device_, pinned_;
+    std::size_t in_use_ = 0, most_in_use_ = 0;
+    std::map<void*, std::unique_ptr<Stream>> streams_;
+    std::map<void*, std::unique_ptr<Event>> events_;
+    std::map<void*, std::unique_ptr<Function>> functions_;
+    std::set<std::thread::id> current_;
+    double clock_s_ = 0;
+};
+
+}  // namespace kadr::test
