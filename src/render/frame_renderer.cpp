@@ -92,17 +92,18 @@ public:
         : device_(device), film_(film), parts_(parts), weights_(weights_of(parts)), frame_(frame) {}
 
     /// Deals the samples of a round to the parts of the shutter, and those of each part to the halves of the film: both
-    /// halves see all parts, as far as there are two samples for them.
+    /// halves see all parts, as far as there are two samples for them. Every other round goes through the parts backwards,
+    /// so that it begins with the one that is set.
     void render(int count, const std::uint8_t* active, bool only_sample, const std::function<void(double)>& progress) {
         const std::vector<SampleRange> ranges = deal_samples(weights_, count);
-        int odd = 0;
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
+        int odd = 0, done = 0;
+        for (std::size_t step = 0; step < parts_.size(); ++step) {
+            const std::size_t i = backwards_ ? parts_.size() - 1 - step : step;
             if (ranges[i].count == 0) continue;
             set_part(i);
             const int larger = (ranges[i].count + 1) / 2, smaller = ranges[i].count - larger;
             const int counts[Film::kHalves] = {odd == 0 ? larger : smaller, odd == 0 ? smaller : larger};
             odd ^= ranges[i].count % 2;
-            int done = ranges[i].first;
             for (int half = 0; half < Film::kHalves; ++half) {
                 if (counts[half] == 0) continue;
                 Pass pass;
@@ -121,6 +122,7 @@ public:
                 stop_if_interrupted();
             }
         }
+        backwards_ = !backwards_;
     }
 
     /// Adds up what the device counted since the last part was set. Call once more after the last round.
@@ -144,6 +146,7 @@ private:
     const std::vector<double> weights_;
     RenderedFrame& frame_;
     std::optional<std::size_t> part_;
+    bool backwards_ = false;
     int first_[Film::kHalves] = {0, 0};
 };
 

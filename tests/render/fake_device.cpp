@@ -9,6 +9,7 @@ public:
     std::string name() const override { return "fake (no lanes, 1 threads)"; }
     void load(const Scene&, const Image*, const BuildSettings&) override {}
     void set_frame(const SceneSnapshot& snapshot) override {
+        ++fake_device().set_frames;
         frame_ = snapshot.frame_number;
         seed_ = snapshot.settings.seed;
         statistics_ = {};

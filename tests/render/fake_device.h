@@ -9,6 +9,7 @@ namespace kadr {
 /// What the fake device does; set by a test before it renders.
 struct FakeDeviceScript {
     int renders = 0;                                  ///< calls of render() so far
+    int set_frames = 0;                               ///< calls of set_frame() so far
     std::vector<Pass> passes;                         ///< as they came
     std::function<void(int render)> before_render;    ///< called with the count so far
     float scale = 1;                                  ///< times the gradient

@@ -1,5 +1,7 @@
 #include "render/render_job.h"
 
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -209,6 +211,26 @@ TEST_F(RenderJobTest, WarnsOnceOfEveryThingThatStrays) {
     const std::vector<Diagnostic> split = warnings_with("samples: 2");
     ASSERT_FALSE(split.empty());
     EXPECT_THAT(split[0].expected, HasSubstr("in each of 2 parts of the shutter"));
+}
+
+// Setting a part builds structures: a steered frame begins each round with the part that is set.
+TEST_F(RenderJobTest, RoundsGoForthAndBackThroughThePartsOfTheShutter) {
+    write_text(folder_.path() / "shaken.yaml", shaken_shot("samples: { max_error: 1e-6, at_least: 8, at_most: 64 }"));
+    options_.shot = folder_.path() / "shaken.yaml";
+    options_.overrides.frames = "0";
+    fake_device().noise = 1;
+    run();
+    const int parts = static_cast<int>(reports_.at(0).motion.parts);
+    ASSERT_GT(parts, 1);
+    constexpr int kRounds = 7;  // up to 8, 12, 16, 24, 32, 48 and 64 samples
+    EXPECT_EQ(fake_device().set_frames, 1 + kRounds * (parts - 1));
+    // Each part goes on in either half where it stopped, whatever came between.
+    std::map<int, int> next;
+    for (const Pass& pass : fake_device().passes) {
+        EXPECT_EQ(pass.first_sample, next[pass.half]);
+        next[pass.half] += pass.sample_count;
+    }
+    EXPECT_EQ(next[0], next[1]);
 }
 
 std::string bytes_of(const fs::path& path) {

@@ -3,10 +3,13 @@
 
   tools/bench/peers.py speed --kadr BUILD/src/cli/kadr --python VENV/bin/python
   tools/bench/peers.py error --kadr BUILD/src/cli/kadr --python VENV/bin/python
+  tools/bench/peers.py adaptive --kadr BUILD/src/cli/kadr --python VENV/bin/python
 
 speed  640×360, 4 bounces, box filter, constant background. Rounds run kadr, Cycles and Mitsuba in turn, because a machine's
        speed drifts. Million pixel-samples per CPU-second of tracing; for kadr that is the difference of two whole
        processes (many samples, few samples), so that start, loading and writing drop out.
+adaptive  320×180: CPU-seconds of tracing to the error of Cycles' adaptive sampling (thresholds 0.1 and 0.01, at most 4096 samples), for
+       kadr with fixed samples and with --max-error; between measured points by straight lines on log-log paper. Median of the seeds.
 error  320×180 at 16 and 64 samples, the median of 8 seeds on both sides: RMSE, trimmed relMSE, and the bias of the mean.
 
 The scenes, references and the peers' drivers lie in the folder that KADR_PEERS names (default: ../shared/peers beside the
@@ -16,6 +19,7 @@ Writes a JSON report (--output) and prints a table.
 """
 import argparse
 import json
+import math
 import os
 import pathlib
 import platform
@@ -75,9 +79,9 @@ def timed(command):
     return text, {"wall_s": time.perf_counter() - wall, "cpu_s": usage.ru_utime + usage.ru_stime, "peak_mib": usage.ru_maxrss / 1024}
 
 
-def run_kadr(options, folder, scene, size, samples, seed=0, image=None):
+def run_kadr(options, folder, scene, size, samples, seed=0, image=None, more=()):
     shot = write_shot(folder, options.peers, scene, size, samples, options.bounces, seed, image or folder / "kadr.exr")
-    _, figures = timed([options.kadr, "render", shot, "--overwrite", "--json", *(["--threads", options.threads] if options.threads else [])])
+    _, figures = timed([options.kadr, "render", shot, "--overwrite", "--json", *more, *(["--threads", options.threads] if options.threads else [])])
     return figures
 
 
@@ -162,6 +166,57 @@ def error(options, folder):
     return report
 
 
+def kadr_curve(options, folder, scene, size, seed, runs):
+    """(CPU-seconds of tracing, RMSE, trimmed relMSE) of each run: (samples, more options)."""
+    loading = min(run_kadr(options, folder, scene, (1, 1), 1)["cpu_s"] for _ in range(3))
+    points = []
+    for i, (samples, more) in enumerate(runs):
+        image = folder / f"kadr.{i}.exr"
+        figures = run_kadr(options, folder, scene, size, samples, seed, image, more)
+        (row,) = errors_of(options, scene, [image])
+        points.append((max(figures["cpu_s"] - loading, 1e-3), row["rmse"], row["relmse_t"]))
+    return points
+
+
+def seconds_to(points, column, wanted):
+    """Seconds at which a curve reaches an error; beyond its ends by its last slope."""
+    curve = sorted((math.log(point[column]), math.log(point[0])) for point in points)
+    at = min(max(1, sum(e < math.log(wanted) for e, _ in curve)), len(curve) - 1)
+    (e0, s0), (e1, s1) = curve[at - 1], curve[at]
+    return math.exp(s0 + (s1 - s0) * (math.log(wanted) - e0) / (e1 - e0))
+
+
+def adaptive(options, folder):
+    size, report = (320, 180), {}
+    kadr_runs = {"fixed": [(n, ()) for n in (16, 64, 256)], "--max-error": [(4096, ("--max-error", str(e))) for e in (0.08, 0.04, 0.02)]}
+    for scene in options.scenes or SPEED_SCENES:
+        for threshold in (0.1, 0.01):
+            rows = []
+            for seed in range(1, options.seeds + 1):
+                image = folder / "cycles.exr"
+                text, _ = timed([options.python, options.peers / "cycles_render.py", options.peers / "scenes" / f"{scene}.glb", "--out", image, "--spp", 4096,
+                                 "--res", f"{size[0]}x{size[1]}", "--frames", FRAME, "--max-bounces", options.bounces, "--seed", seed, "--adaptive", threshold])
+                line = json.loads([t for t in text.splitlines() if t.startswith("{")][-1])
+                (error,) = errors_of(options, scene, [image])
+                row = {"cycles": {"cpu_s": line["trace_cpu_s"], "rmse": error["rmse"], "relmse_t": error["relmse_t"]}}
+                for name, runs in kadr_runs.items():
+                    points = kadr_curve(options, folder, scene, size, seed, runs)
+                    row[name] = {"points": points, "rmse_s": seconds_to(points, 1, error["rmse"]), "relmse_t_s": seconds_to(points, 2, error["relmse_t"])}
+                rows.append(row)
+                print(f"  {scene} threshold {threshold} seed {seed}: cycles {row['cycles']}", file=sys.stderr)
+            report.setdefault(scene, {})[str(threshold)] = rows
+    print(f"\nCPU-seconds of tracing to the error of Cycles' adaptive sampling, {size[0]}×{size[1]}, median of {options.seeds} seeds")
+    print(f"{'scene':16} {'threshold':>9} {'Cycles':>8} {'RMSE':>8} {'relMSE_t':>9}  {'kadr':12} {'to RMSE':>8} {'Cycles is':>10} {'to relMSE_t':>12} {'Cycles is':>10}")
+    for scene, by_threshold in report.items():
+        for threshold, rows in by_threshold.items():
+            cycles = {key: statistics.median(row["cycles"][key] for row in rows) for key in ("cpu_s", "rmse", "relmse_t")}
+            for name in kadr_runs:
+                seconds = [statistics.median(row[name][key] for row in rows) for key in ("rmse_s", "relmse_t_s")]
+                ratios = [statistics.median(row["cycles"]["cpu_s"] / row[name][key] for row in rows) for key in ("rmse_s", "relmse_t_s")]
+                print(f"{scene:16} {threshold:>9} {cycles['cpu_s']:8.2f} {cycles['rmse']:8.4f} {cycles['relmse_t']:9.5f}  {name:12} {seconds[0]:8.2f} {ratios[0]:8.2f} × {seconds[1]:12.2f} {ratios[1]:8.2f} ×")
+    return report
+
+
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine()) if os.path.exists("/proc/cpuinfo") else platform.machine()
     commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
@@ -170,7 +225,7 @@ def machine():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mode", choices=("speed", "error"))
+    parser.add_argument("mode", choices=("speed", "error", "adaptive"))
     parser.add_argument("--kadr", type=pathlib.Path, default=ROOT / "build" / "release" / "src" / "cli" / "kadr")
     parser.add_argument("--python", default="", help="interpreter with bpy, mitsuba, numpy and OpenImageIO")
     parser.add_argument("--peers", type=pathlib.Path, default=pathlib.Path(os.environ.get("KADR_PEERS", ROOT.parent / "shared" / "peers")))
@@ -190,10 +245,10 @@ def main():
         skip(f"no folder {options.peers / 'scenes'}; set KADR_PEERS")
     if not options.kadr.exists():
         parser.error(f"no program at {options.kadr}; give --kadr")
-    if not options.python and (options.mode == "error" or options.renderers != ["kadr"]):
+    if not options.python and (options.mode != "speed" or options.renderers != ["kadr"]):
         skip("give --python, an interpreter with bpy, mitsuba, numpy and OpenImageIO (see README.md of the peers), or --renderers kadr")
     with tempfile.TemporaryDirectory(prefix="kadr-peers-") as folder:
-        report = {"speed": speed, "error": error}[options.mode](options, pathlib.Path(folder))
+        report = {"speed": speed, "error": error, "adaptive": adaptive}[options.mode](options, pathlib.Path(folder))
     if options.output:
         options.output.write_text(json.dumps({"mode": options.mode, "machine": machine(), "settings": {k: str(v) for k, v in vars(options).items()},
                                               "report": report}, indent=1) + "\n")
