@@ -36,6 +36,7 @@ glm::dvec3 direction_of(const BoundShot& shot, const LightSpec& spec, const glm:
 }
 
 void set_cone(kernels::Light& light, double inner_rad, double outer_rad) {
+    // What the shot says was checked; clips may drive one angle beyond the other, and it is held there as at any limit.
     inner_rad = std::min(inner_rad, outer_rad);
     light.inner_rad = static_cast<float>(inner_rad);
     light.outer_rad = static_cast<float>(outer_rad);

@@ -189,25 +189,6 @@ NodeRig::Selection NodeRig::select(std::span<const int> nodes) const {
     return selection;
 }
 
-void NodeRig::evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world, double clip_offset_s) const {
-    world.resize(selection.nodes.size());
-    int file = -1;
-    glm::dmat4 above(1);
-    for (std::size_t slot = 0; slot < selection.nodes.size(); ++slot) {
-        const int node = selection.nodes[slot];
-        const glm::dmat4 local = moves_itself(node) ? local_transform(node, time_s, clip_offset_s) : local_[index(node)];
-        const int parent = scene_->nodes[index(node)].parent;
-        if (selection.parent_slot[slot] >= 0) {
-            world[slot] = world[index(selection.parent_slot[slot])] * local;
-        } else if (parent >= 0) {
-            world[slot] = world_[index(parent)] * local;
-        } else {
-            if (file != file_[index(node)]) above = scene_transform(file = file_[index(node)], time_s);
-            world[slot] = above * local;
-        }
-    }
-}
-
 NodeRig::Activity NodeRig::own_activity(int node, LayerWindows windows, double begin_s, double end_s, double clip_offset_s) const {
     Activity own;
     std::vector<double> times;

@@ -62,8 +62,6 @@ public:
         std::vector<std::pair<int, int>> slots;  ///< (node, slot) in ascending order of nodes
     };
     Selection select(std::span<const int> nodes) const;
-    /// World transforms, parallel to selection.nodes.
-    void evaluate(const Selection& selection, double time_s, std::vector<glm::dmat4>& world, double clip_offset_s = 0) const;
 
     /// How lively each selected node is during (begin, end): what its own tracks and those above it do.
     struct Activity {

@@ -1,6 +1,6 @@
 #include "frame/snapshot_key.h"
 
-#include <type_traits>
+#include "base/feed.h"
 
 namespace kadr {
 
@@ -8,30 +8,18 @@ namespace {
 
 // Every struct is taken apart by a structured binding: a member that is added to one does not compile until somebody
 // decides whether it belongs into the key.
-class Feed {
+class SnapshotFeed : public Feed<SnapshotFeed> {
 public:
-    explicit Feed(Hasher& hasher) : hasher_(hasher) {}
+    using Feed::Feed;
+    using Feed::add;
 
-    template <class... Values>
-    void operator()(const Values&... values) {
-        (add(values), ...);
-    }
-
-private:
-    template <class Number>
-    requires std::is_integral_v<Number> || std::is_enum_v<Number>
-    void add(Number value) { hasher_.add(static_cast<std::int64_t>(value)); }
-    template <class Number>
-    requires std::is_floating_point_v<Number>
-    void add(Number value) { hasher_.add(static_cast<double>(value)); }
-    void add(const std::string& text) { hasher_.add(text); }
     void add(const glm::dvec3& v) { (*this)(v.x, v.y, v.z); }
     void add(const kernels::Vec3f& v) { (*this)(v.x, v.y, v.z); }
     void add(const std::vector<kernels::CameraKey>& keys) { bytes(keys); }
     void add(const std::vector<glm::dmat4>& matrices) { bytes(matrices); }
     void add(const std::vector<kernels::Vec3f>& positions) { bytes(positions); }
     void add(const LightKeys& light) { (*this)(light.first, light.count); }
-    void add(const kernels::CameraKey& key) { hasher_.add(std::string_view(reinterpret_cast<const char*>(&key), sizeof key)); }
+    void add(const kernels::CameraKey& key) { add_bytes(&key, 1); }
     void add(const kernels::Light& light) {
         const auto& [radiance, kind, falloff, position, direction, axis_u, axis_v, cos_inner, cos_outer, inner, outer, range, radius, angular] = light;
         (*this)(radiance, kind, falloff, position, direction, axis_u, axis_v, cos_inner, cos_outer, inner, outer, range, radius, angular);
@@ -65,7 +53,7 @@ private:
     void add(const kernels::Shutter& shutter) {
         const auto& [plain, direction, weight, first_open, delay, length, passed] = shutter;
         (*this)(plain, direction, weight, first_open, delay, length);
-        if (!plain) hasher_.add(std::string_view(reinterpret_cast<const char*>(passed), sizeof passed));
+        if (!plain) add_bytes(passed, std::size(passed));
     }
     void add(const SceneSnapshot& part) {
         // Instances, motion and bent vertices by geometry_key, which is made of them.
@@ -73,29 +61,19 @@ private:
                                       light_keys, light_error, environment, previous, settings, still_key, geometry_key] = part;
         (*this)(weight, shutter, origin, materials, camera_keys, camera, lights, light_keys, environment, previous, settings, geometry_key);
     }
-    template <class T>
-    void add(const std::optional<T>& value) {
-        add(value.has_value());
-        if (value) add(*value);
-    }
-    template <class T>
-    void add(const std::vector<T>& list) {
-        add(list.size());
-        for (const T& item : list) add(item);
-    }
+
+private:
     template <class T>
     void bytes(const std::vector<T>& values) {
-        hasher_.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+        add_bytes(values.data(), values.size());
     }
-
-    Hasher& hasher_;
 };
 
 }  // namespace
 
 Hash content_key(const std::vector<SceneSnapshot>& parts) {
     Hasher hasher;
-    Feed feed(hasher);
+    SnapshotFeed feed(hasher);
     for (const SceneSnapshot& part : parts) feed(part);
     return hasher.finish();
 }

@@ -53,7 +53,7 @@ const std::vector<int>& frames_of(const PreviewOptions& options, const PreviewSe
 }
 
 FrameTime time_of(const PreviewOptions& options, const PreviewSession& session) {
-    if (options.time_s) return session.bound().sequence().at_time(*options.time_s);
+    if (options.time_s) return session.at_time(*options.time_s);
     return session.frame(options.frame.value_or(frames_of(options, session).front()));
 }
 

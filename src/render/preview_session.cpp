@@ -46,6 +46,13 @@ PreviewSession::PreviewSession(const RenderOptions& options, const RenderEvents&
     load_device(*choice_.device, loaded_);
 }
 
+FrameTime PreviewSession::checked(const FrameTime& time) const {
+    const double lead_s = shot().output.has(Aov::motion) ? 1 / bound().timing().fps.value() : 0;  // the layer looks at the frame before
+    std::vector<Diagnostic> problems = values_out_of_range(shot().limited_tracks, bound().timing(), time, lead_s);
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return time;
+}
+
 ViewSpec PreviewSession::view(double time_s) {
     if (!view_.automatic) return view_at(view_, time_s);
     view_.exposure_stops = meter_exposure(shot(), loaded_.scene(), renderer_, frame(bound().timing().frames.front()));

@@ -22,7 +22,10 @@ public:
     const LoadedShot& loaded() const { return loaded_; }
     const Shot& shot() const { return loaded_.shot(); }
     const BoundShot& bound() const { return loaded_.bound(); }
-    FrameTime frame(int number) const { return bound().sequence().frame(number); }
+    /// A frame, or what would be one at a time: inside the shot's range or not.
+    /// @throws InputError  where a track has left its range then, which was looked at over the shot's frames alone
+    FrameTime frame(int number) const { return checked(bound().sequence().frame(number)); }
+    FrameTime at_time(double time_s) const { return checked(bound().sequence().at_time(time_s)); }
     /// The shot's view at a time, with its exposure metered where it is automatic.
     ViewSpec view(double time_s);
 
@@ -41,6 +44,8 @@ public:
     const std::string& device_name() const { return device_name_; }
 
 private:
+    FrameTime checked(const FrameTime& time) const;
+
     Stopwatch watch_;
     const RenderEvents& events_;
     DeviceChoice choice_;

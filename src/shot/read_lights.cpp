@@ -91,8 +91,9 @@ void read_cone(const Section& section, LightSpec& light) {
     assign(light.inner_rad, inner);
     assign(light.outer_rad, outer);
     assign(light.falloff, read_choice<SpotFalloff>(section["falloff"]));
-    const bool constant = light.inner_rad.is_constant() && light.outer_rad.is_constant();
-    if (!inner || !constant || light.inner_rad.keys.front().value <= light.outer_rad.keys.front().value) return;
+    if (!inner) return;
+    if (!light.inner_rad.is_constant() || !light.outer_rad.is_constant()) return note_cone(section["inner"], light.inner_rad, light.outer_rad);
+    if (light.inner_rad.keys.front().value <= light.outer_rad.keys.front().value) return;
     const Field outer_field = section["outer"];
     section["inner"].error(
         fmt::format("{}.inner is {}, wider than outer at {}", section.name(), section["inner"].node->text,

@@ -1,27 +1,17 @@
 #include "shot/shot_hash.h"
 
-#include <type_traits>
+#include "base/feed.h"
 
 namespace kadr {
 
 namespace {
 
-/// Feeds values of any of the shot's types; the order of calls is the format of what is hashed.
-class Feed {
+/// Feeds values of any of the shot's types.
+class ShotFeed : public Feed<ShotFeed> {
 public:
-    explicit Feed(Hasher& hasher) : hasher_(hasher) {}
+    using Feed::Feed;
+    using Feed::add;
 
-    template <class... Values>
-    void operator()(const Values&... values) {
-        (add(values), ...);
-    }
-
-private:
-    template <class Number>
-    requires std::is_integral_v<Number> || std::is_enum_v<Number>
-    void add(Number value) { hasher_.add(static_cast<std::int64_t>(value)); }
-    void add(double value) { hasher_.add(value); }
-    void add(const std::string& text) { hasher_.add(text); }
     void add(const Rational& value) { (*this)(value.numerator, value.denominator); }
     void add(const glm::dvec2& v) { (*this)(v.x, v.y); }
     void add(const glm::dvec3& v) { (*this)(v.x, v.y, v.z); }
@@ -29,16 +19,6 @@ private:
     void add(const NodeReference& node) { add(node.text); }
     void add(const Spin& spin) { (*this)(spin.turns, spin.axis); }
     void add(const Ease& ease) { (*this)(ease[0], ease[1], ease[2], ease[3]); }
-    template <class T>
-    void add(const std::optional<T>& value) {
-        add(value.has_value());
-        if (value) add(*value);
-    }
-    template <class... Ts>
-    void add(const std::variant<Ts...>& value) {
-        add(value.index());
-        std::visit([this](const auto& inside) { add(inside); }, value);
-    }
     template <class T>
     void add(const Track<T>& track) {
         (*this)(track.interpolation, track.before, track.after, track.overshoot, track.keys.size());
@@ -91,26 +71,19 @@ private:
                 r.filter, r.filter_width_px, r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed,
                 r.seed_animated, r.cull_backfaces, r.denoise, r.build, r.robust, r.texture_limit_px);
     }
-    template <class T>
-    void add(const std::vector<T>& list) {
-        add(list.size());
-        for (const T& item : list) add(item);
-    }
-
-    Hasher& hasher_;
 };
 
 }  // namespace
 
 void hash_shot(const Shot& shot, Hasher& hasher) {
-    Feed feed(hasher);
+    ShotFeed feed(hasher);
     feed(shot.timing.fps, shot.timing.first, shot.image.width, shot.image.height, shot.image.pixel_aspect);
     feed(shot.scenes, shot.camera, shot.shutter, shot.lights, shot.environment, shot.use_scene_lights);
     feed(shot.render, shot.output.aovs);
 }
 
 void hash_view(const Shot& shot, Hasher& hasher) {
-    Feed feed(hasher);
+    ShotFeed feed(hasher);
     feed(shot.view.transform, shot.view.exposure_stops, shot.view.automatic, shot.output.png_bits);
     feed(shot.view.exposure_keys);
 }

@@ -62,8 +62,18 @@ constexpr KeyValues<glm::dvec3> kScales{read_scale, read_scale_tangent};
 std::optional<Track<double>> read_number_track(const Field& field) { return read_track(field, kNumbers); }
 std::optional<Track<glm::dvec2>> read_vector2_track(const Field& field) { return read_track(field, kVectors2); }
 std::optional<Track<glm::dvec3>> read_vector3_track(const Field& field) { return read_track(field, kVectors3); }
-std::optional<Track<glm::dvec3>> read_direction_track(const Field& field) { return read_track(field, kDirections); }
-std::optional<Track<glm::dvec3>> read_scale_track(const Field& field) { return read_track(field, kScales); }
+
+std::optional<Track<glm::dvec3>> read_direction_track(const Field& field) {
+    auto track = read_track(field, kDirections);
+    if (track) note_direction(field, *track);
+    return track;
+}
+
+std::optional<Track<glm::dvec3>> read_scale_track(const Field& field) {
+    auto track = read_track(field, kScales);
+    if (track) note_scale(field, *track);
+    return track;
+}
 
 std::optional<SwitchTrack> read_switch_track(const Field& field) {
     auto track = read_track(field, kSwitches);

@@ -125,6 +125,48 @@ TEST(TrackExtremes, ALoopReachesItsLastKeyWhateverItsSecondsAreRoundedTo) {
     EXPECT_NEAR(next.greatest.time_s, 5.2, kRounding);
 }
 
+TEST(TrackZeros, AreWhereItPassesThroughAndWhereItTurns) {
+    EXPECT_THAT(zeros_of(track_of({key(0, 3), key(1, -1), key(2, 1)}, Interpolation::linear), 0, 2), ElementsAre(DoubleNear(0.75, kRounding), DoubleNear(1.5, kRounding)));
+    EXPECT_THAT(zeros_of(track_of({key(0, 3), key(1, -1), key(2, 1)}, Interpolation::linear), 0, 0.5), IsEmpty());
+    EXPECT_THAT(zeros_of(track_of({key(0, 3), key(1, -1)}, Interpolation::step), 0, 2), IsEmpty());
+    EXPECT_THAT(zeros_of(track_of({key(0, 3), key(1, 1)}, Interpolation::linear), 0, 2), IsEmpty());
+    EXPECT_THAT(zeros_of(Track<double>(0.0), 0, 2), IsEmpty());
+    EXPECT_THAT(zeros_of(track_of({key(0, 0), key(1, 0)}, Interpolation::linear), 0, 2), IsEmpty());  // it stays there
+    EXPECT_THAT(zeros_of(track_of({key(0, 1), key(1, 0), key(2, 3)}, Interpolation::linear), 0, 2), testing::Each(1));  // at a key
+    EXPECT_FALSE(zeros_of(track_of({key(0, 1), key(1, 0), key(2, 3)}, Interpolation::linear), 0, 1).empty());
+    // (0.7 - u)^2 touches zero, but for rounding.
+    EXPECT_THAT(zeros_of(track_of({key(0, 0.49, {}, 0, -1.4), key(1, 0.09, {}, 0.6, 0)}, Interpolation::cubic), 0, 1), testing::Contains(DoubleNear(0.7, kRounding)));
+    // An ease leads below zero and back.
+    EXPECT_EQ(zeros_of(track_of({key(0, 1, Ease{0.5, 4, 0.5, -3}), key(1, 0.1)}, Interpolation::linear), 0, 1).size(), 2u);
+}
+
+TEST(TrackZeros, BeyondTheKeysToo) {
+    const auto falling = track_of({key(0, 3), key(1, 2)}, Interpolation::linear, Extrapolation::continued, Extrapolation::continued);
+    EXPECT_THAT(zeros_of(falling, 0, 4), ElementsAre(DoubleNear(3, kRounding)));
+    EXPECT_THAT(zeros_of(falling, 0, 2.9), IsEmpty());
+    EXPECT_THAT(zeros_of(track_of({key(1, 2), key(2, 3)}, Interpolation::linear, Extrapolation::continued), -4, 4), ElementsAre(DoubleNear(-1, kRounding)));
+    const auto loop = track_of({key(0, 3), key(1, -1)}, Interpolation::linear, Extrapolation::pingpong, Extrapolation::repeat);
+    EXPECT_THAT(zeros_of(loop, -1, 2), ElementsAre(DoubleNear(-0.75, kRounding), DoubleNear(0.75, kRounding), DoubleNear(1.75, kRounding)));
+    EXPECT_THAT(zeros_of(loop, 0.8, 1.7), IsEmpty());  // it jumps from -1 to 3
+}
+
+TEST(GreatestDifference, IsFoundBetweenKeys) {
+    const auto flat = track_of({key(0, 1), key(4, 1)}, Interpolation::linear);
+    const auto peak = track_of({key(0, 0), key(1.3, 2), key(4, 0)}, Interpolation::linear);
+    EXPECT_EQ(greatest_difference(peak, flat, 0, 4).value, 1);
+    EXPECT_EQ(greatest_difference(peak, flat, 0, 4).time_s, 1.3);
+    EXPECT_NEAR(greatest_difference(flat, peak, 1, 3).value, 1 - 2 / 2.7, kRounding);
+    EXPECT_EQ(greatest_difference(peak, Track<double>(3.0), 2, 2).value, evaluate(peak, 2) - 3);
+    const auto valley = track_of({key(0, 2), key(1.3, 0), key(4, 2)}, Interpolation::linear);
+    EXPECT_EQ(greatest_difference(flat, valley, 0, 4).value, 1);
+    EXPECT_EQ(greatest_difference(flat, valley, 0, 4).time_s, 1.3);
+    // The smooth segment's 1 + u (1 - u) / 2 against 1.1 + 0.11 u: greatest at u = 0.39, which is none of sixteen steps.
+    const auto smooth = track_of({key(0, 0), key(1, 1), key(2, 1), key(3, 0)}, Interpolation::smooth), rising = track_of({key(1, 1.1), key(2, 1.21)}, Interpolation::linear);
+    const Extreme greatest = greatest_difference(smooth, rising, 1, 2);
+    EXPECT_NEAR(greatest.value, 0.5 * 0.39 * 0.61 - 0.1 - 0.11 * 0.39, kRounding);
+    EXPECT_NEAR(greatest.time_s, 1.39, 1e-6);  // flat there: half the digits
+}
+
 TEST(TrackExtremes, OnlySomeTracksCanLeaveTheirKeys) {
     const std::vector<Key<double>> keys{key(0, 0), key(1, 1)}, swinging{key(0, 0, Ease{0.3, -0.5, 0.7, 1}), key(1, 1)};
     EXPECT_FALSE(may_leave_keys(Track<double>(3.0)));
@@ -184,6 +226,25 @@ RC_GTEST_PROP(TrackExtremesProperty, NoSampleLiesBeyondThemAndTheyAreReached, ()
         double nearest = std::abs(evaluate(track, extreme.time_s) - extreme.value);
         for (const double beside : {-1e-9, 1e-9}) nearest = std::min(nearest, std::abs(evaluate(track, extreme.time_s + beside) - extreme.value));
         RC_ASSERT(nearest < 1e-4);  // an ease may be steep there
+    }
+}
+
+RC_GTEST_PROP(TrackZerosProperty, BetweenThemTheSignChangesInJumpsAlone, ()) {
+    const Track<double> track = any_track();
+    const double begin = number(-8, 8), end = begin + number(0, 1) * (track.keys.back().time_s - track.keys.front().time_s);
+    const std::vector<double> zeros = zeros_of(track, begin, end), jumps = discontinuities(track, begin, end);
+    RC_ASSERT(std::is_sorted(zeros.begin(), zeros.end()));
+    constexpr double kNear = 1e-9;
+    const auto any_within = [](const std::vector<double>& times, double from, double to) {
+        return std::any_of(times.begin(), times.end(), [&](double time) { return time >= from - kNear && time <= to + kNear; });
+    };
+    for (int i = 0; i < 500; ++i) {
+        const double from = std::lerp(begin, end, i / 500.0), to = std::lerp(begin, end, (i + 1) / 500.0);
+        if (evaluate(track, from) * evaluate(track, to) < 0) RC_ASSERT(any_within(zeros, from, to) || any_within(jumps, from, to));
+    }
+    for (const double zero : zeros) {
+        RC_ASSERT(zero >= begin - kNear && zero <= end + kNear);
+        RC_ASSERT(std::abs(evaluate(track, zero)) < 1e-4);  // an ease may be steep there
     }
 }
 

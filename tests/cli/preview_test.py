@@ -43,6 +43,15 @@ class Preview(ProgramTest):
     def test_bad_frames(self):
         self.assertIn('frames "9-5"', self.refused("--sheet", "2x2", "--frames", "9-5"))
 
+    def test_values_out_of_range_beyond_the_last_frame(self):
+        more = "view: { exposure: { keys: { 0 s: 0, 1 s: -100 }, after: continue } }\n"
+        fading = self.write_shot(name="fading.yaml", more=more)
+        self.run_kadr("preview", fading, "--time", "1.9s")
+        for option, value in (("--time", "3s"), ("--frame", "72")):
+            process = self.run_kadr("preview", fading, option, value, code=2)
+            self.assertIn("error: view.exposure is -302.083 stops at 3.0208 s (frame 72.5)", process.err)
+            self.assertIn("expected -200 to 200 stops; the track goes on with its end's slope", process.err)
+
     def test_output_endings(self):
         self.assertEqual(self.refused("--sheet", "2x2", "--output", "sheet.exr"), "error: --output is 'sheet.exr'\n"
                          "  expected a name that ends in .png or .jpg: it is a picture for people, not linear light\n")

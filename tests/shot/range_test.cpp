@@ -100,6 +100,71 @@ TEST_F(Range, ValuesThatLookAllowedAreShownInFull) {
     EXPECT_EQ(problems_of(shot), "");
 }
 
+TEST_F(Range, ScalesKeepTheirSign) {
+    const auto scene = [](const std::string& text) {
+        return problems_of(parse_shot_text("kadr: 1\nscenes: [ { gltf: a.glb, " + text + " } ]\ntiming: { frames: 0-48 }\ncamera: {}\nshutter: 0\n", "shot.yaml"));
+    };
+    const auto scale = [&](const std::string& track) { return scene("transform: { scale: " + track + " }"); };
+    EXPECT_EQ(scale("{ keys: { 0 s: 1, 1 s: [1, -1, 1] } }"),
+              "shot.yaml:2:46: error: scenes.0.transform.scale[1] passes through zero at 0.5 s (frame 12)\n"
+              "    scenes: [ { gltf: a.glb, transform: { scale: { keys: { 0 s: 1, 1 s: [1, -1, 1] } } } } ]\n"
+              "                                                 ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\n"
+              "  expected a scale that keeps its sign; interpolate: step mirrors a thing at once, a tiny scale such as 1e-6 makes it vanish\n");
+    EXPECT_EQ(scale("{ keys: { 0 s: 1, 1 s: -1 }, interpolate: step }"), "");
+    EXPECT_EQ(scale("{ keys: { 0 s: 1, 5 s: -1 } }"), "");  // later than the last frame
+    EXPECT_EQ(scale("{ keys: { 0 s: -1, 1 s: -2 } }"), "");
+    EXPECT_THAT(scale("{ keys: { 0 s: 1, 0.5 s: 0.01, 1 s: 0.01, 2 s: 1 }, interpolate: smooth }"), HasSubstr("scenes.0.transform.scale[0] passes through zero at 0.5"));
+    EXPECT_EQ(scale("{ keys: { 0 s: 1, 0.5 s: 0.01, 1 s: 0.01, 2 s: 1 }, interpolate: smooth, overshoot: false }"), "");
+    EXPECT_THAT(scale("{ keys: { 0 s: 2, 1 s: 1 }, after: continue }"), HasSubstr("passes through zero at 2 s (frame 48)"));
+    EXPECT_THAT(scene("nodes: { Wheel: { scale: { keys: { 0 s: [1, 1, 1], 1 s: [1, 1, -3] } } } }"), HasSubstr("scenes.0.nodes.Wheel.scale[2] passes through zero at 0.25 s (frame 6)"));
+}
+
+TEST_F(Range, DirectionsNeverVanish) {
+    const auto sun = [](const std::string& track) { return problems("lights: [ { id: sun, type: directional, direction: " + track + " } ]"); };
+    EXPECT_EQ(sun("{ keys: { 0 s: [1, 0, -3], 2 s: [-1, 0, 3] } }"),
+              "shot.yaml:6:52: error: lights.sun.direction passes through zero at 1 s (frame 24)\n"
+              "    lights: [ { id: sun, type: directional, direction: { keys: { 0 s: [1, 0, -3], 2 s: [-1, 0, 3] } } } ]\n"
+              "                                                       ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\n"
+              "  expected a direction at every time; a key to one side of the others leads it round\n");
+    EXPECT_EQ(sun("{ keys: { 0 s: [1, 0, -3], 2 s: [-1, 1e-3, 3] } }"), "");  // past it
+    EXPECT_EQ(sun("{ keys: { 0 s: [1, 0, -3], 1 s: [0, -1, 0], 2 s: [-1, 0, 3] } }"), "");
+    EXPECT_EQ(sun("{ keys: { 0 s: [1, -1, 0], 1 s: [-1, -1, 0], 2 s: [-1, 1, 0] } }"), "");  // x is zero at one time and y at another
+    EXPECT_EQ(sun("{ keys: { 0 s: [1, 0, 0], 2 s: [-1, 0, 0] }, interpolate: step }"), "");
+    EXPECT_EQ(sun("{ keys: { 0 s: [0, 0, 1], 0.7 s: [0, 1, 0], 5 s: [0, -1, 0] } }"), "");  // later than the last frame
+    EXPECT_THAT(sun("{ keys: { 0 s: [0, 0, 1], 0.7 s: [0, 1, 0], 1.9 s: [0, -2, 0] } }"), HasSubstr("passes through zero at 1.1 s (frame 26.4)"));
+    EXPECT_THAT(sun("{ keys: { 0 s: { value: [3, 1, 2], ease: [0.2, 0.9, 0.8, 0.1] }, 1 s: [-3, -1, -2] } }"), HasSubstr("passes through zero at 0.5 s (frame 12)"));
+    EXPECT_THAT(problems_of(parse_camera("{ up: { keys: { 0 f: [0, 1, 0], 10 f: [0, -1, 0] } } }\ntiming: { frames: 0-48 }")), HasSubstr("camera.up passes through zero at 0.2083 s (frame 5)"));
+}
+
+TEST_F(Range, TheInnerConeStaysInsideTheOuter) {
+    EXPECT_EQ(of_light("inner: { keys: { 0 s: 10 deg, 1 s: 40 deg } }, outer: 30 deg"),
+              "shot.yaml:6:41: error: lights.key.inner is 40 deg at 1 s (frame 24), wider than outer at 30 deg\n"
+              "    lights: [ { id: key, type: spot, inner: { keys: { 0 s: 10 deg, 1 s: 40 deg } }, outer: 30 deg } ]\n"
+              "                                            ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\n"
+              "  expected inner to be at most outer at every time; both are half-angles\n");
+    EXPECT_EQ(of_light("inner: { keys: { 0 s: 10 deg, 1 s: 30 deg } }, outer: 30 deg"), "");
+    EXPECT_EQ(of_light("inner: { keys: { 0 s: 10 deg, 5 s: 80 deg } }, outer: 60 deg"), "");  // later than the last frame
+    EXPECT_THAT(of_light("inner: 20 deg, outer: { keys: { 0 s: 30 deg, 0.5 s: 15 deg, 1 s: 30 deg } }"), HasSubstr("lights.key.inner is 20 deg at 0.5 s (frame 12), wider than outer at 15 deg\n"));
+    EXPECT_THAT(of_light("inner: { keys: { 0 s: 44 deg, 1 s: 50 deg } }"), HasSubstr("lights.key.inner is 50 deg at 1 s (frame 24), wider than outer at 45 deg\n"));  // what outer is where it is not given
+    EXPECT_EQ(of_light("outer: { keys: { 0 s: 30 deg, 1 s: 1 deg } }"), "");
+    // Both pass through the same values at other times.
+    EXPECT_THAT(of_light("inner: { keys: { 0 s: 10 deg, 1 s: 30 deg } }, outer: { keys: { 0 s: { value: 20 deg, ease: in }, 1 s: 40 deg } }"), "");
+    EXPECT_THAT(of_light("inner: { keys: { 0 s: { value: 10 deg, ease: out }, 1 s: 30 deg } }, outer: { keys: { 0 s: { value: 12 deg, ease: in }, 1 s: 40 deg } }"),
+                HasSubstr("wider than outer"));
+}
+
+TEST_F(Range, AFrameByItselfIsCheckedToo) {
+    const Shot shot = parse("timing: { frames: 0-48 }\nshutter: 0\nlights: [ { id: key, type: point, intensity: { keys: { 0 s: 8, 1 s: 5 }, after: continue } } ]\n");
+    EXPECT_EQ(problems_of(shot), "");
+    const Sequence sequence(shot.timing, shot.shutter);
+    EXPECT_TRUE(values_out_of_range(shot.limited_tracks, shot.timing, sequence.frame(60)).empty());
+    const auto problems = values_out_of_range(shot.limited_tracks, shot.timing, sequence.at_time(3));
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_THAT(problems[0].text(), HasSubstr("lights.key.intensity is -1 cd at 3 s (frame 72)"));
+    EXPECT_TRUE(values_out_of_range(shot.limited_tracks, shot.timing, sequence.at_time(2.5)).empty());
+    EXPECT_EQ(values_out_of_range(shot.limited_tracks, shot.timing, sequence.at_time(2.7), 0.1).size(), 1u);
+}
+
 TEST_F(Range, OneProblemATrack) {
     const std::string text = of_light("intensity: { keys: { 0 s: { value: 1, out_tangent: -40 }, 1 s: { value: 1, in_tangent: -40 } }, interpolate: cubic, before: continue, after: continue }");
     EXPECT_EQ(std::count(text.begin(), text.end(), '^'), 1);
