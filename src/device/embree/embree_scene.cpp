@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "device/embree/alpha_filter.h"
 #include "device/embree/motion_keys.h"
+#include "kernels/light/environment_tables.h"
 #include "kernels/light/light.h"
 #include "kernels/scene/motion.h"
 #include "kernels/texture/texture.h"
