@@ -298,8 +298,8 @@ private:
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
         } else {
             const DirectResult<F> vertex = shade_direct<F, R>(
-                scene, path, hit, active, [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
-            add(slot, vertex.emitted, bits(active));
+                scene, path, hit, active, [&](Vec3<F> L) { add(slot, L, bits(active)); },
+                [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
             surface(path, hit, vertex.albedo, vertex.normal, slot, active);
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
         }
