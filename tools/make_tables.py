@@ -78,11 +78,11 @@ def c_array(name, values, comment):
     numbers = [f"{x:.7f}f" for x in np.asarray(values).ravel()]
     rows = [", ".join(numbers[i:i + 8]) for i in range(0, len(numbers), 8)]
     body = ",\n    ".join(rows)
-    return f"/// {comment}\ninline constexpr float {name}[{len(numbers)}] = {{\n    {body}}};\n"
+    return f"/// {comment}\nSHARED_TABLE float {name}[{len(numbers)}] = {{\n    {body}}};\n"
 
 
 def header(title, *arrays):
-    return f"// {title}\n// Written by tools/make_tables.py.\n// clang-format off\n#pragma once\n\nnamespace kadr::kernels {{\n\n" + "\n".join(arrays) + \
+    return f"// {title}\n// Written by tools/make_tables.py.\n// clang-format off\n#pragma once\n\n#include \"kernels/math/platform.h\"\n\nnamespace kadr::kernels {{\n\n" + "\n".join(arrays) + \
         "\n}  // namespace kadr::kernels\n"
 
 

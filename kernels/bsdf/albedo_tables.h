@@ -3,6 +3,8 @@
 // clang-format off
 #pragma once
 
+#include "kernels/math/platform.h"
+
 namespace kadr::kernels {
 
 inline constexpr int kAlbedoTableSize = 64;
@@ -10,7 +12,7 @@ inline constexpr int kAlbedoTableSize = 64;
 inline constexpr float kAlbedoTableStart = 0.177827941f;
 
 /// [roughness][cosine], Fresnel 1. Axes: alpha^(1/4) even in [kAlbedoTableStart, 1], cosine^(1/4) even in [0, 1].
-inline constexpr float kAlbedoWhite[4096] = {
+SHARED_TABLE float kAlbedoWhite[4096] = {
     0.9999926f, 0.9999926f, 0.9998010f, 0.9989361f, 0.9965979f, 0.9917531f, 0.9831435f, 0.9696732f,
     0.9509622f, 0.9285104f, 0.9068990f, 0.8932756f, 0.8934288f, 0.9072056f, 0.9284666f, 0.9498198f,
     0.9668860f, 0.9787985f, 0.9865174f, 0.9913657f, 0.9943809f, 0.9962778f, 0.9974837f, 0.9982727f,
@@ -525,7 +527,7 @@ inline constexpr float kAlbedoWhite[4096] = {
     0.4030616f, 0.3880651f, 0.3734653f, 0.3593060f, 0.3455661f, 0.3322444f, 0.3193451f, 0.3068698f};
 
 /// [roughness][cosine], Fresnel (1 - h.o)^5.
-inline constexpr float kAlbedoSchlick[4096] = {
+SHARED_TABLE float kAlbedoSchlick[4096] = {
     0.9725473f, 0.9725473f, 0.9723722f, 0.9715817f, 0.9694424f, 0.9650098f, 0.9571244f, 0.9447746f,
     0.9276069f, 0.9070289f, 0.8873630f, 0.8753585f, 0.8763964f, 0.8900372f, 0.9100083f, 0.9288874f,
     0.9423007f, 0.9493740f, 0.9510308f, 0.9485318f, 0.9428355f, 0.9345677f, 0.9240628f, 0.9115019f,

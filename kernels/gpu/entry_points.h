@@ -1,7 +1,7 @@
 // Which kernel renders what: the host's table of entry points. Holds no device code.
 #pragma once
 
-#include "kernels/scene/scene_types.h"
+#include "kernels/gpu/launch_params.h"
 
 namespace kadr::kernels {
 
@@ -21,9 +21,23 @@ constexpr EntryPoint entry_point(IntegratorKind integrator) {
                                                 : EntryPoint{"kadr_path", "kernels/gpu/path_entry.h"};
 }
 
-/// Decides whether a ray stops at a hit on geometry of type geometry_type::kFiltered: hiprtFuncNameSet::filterFuncName of
-/// that type (one ray type).
-inline constexpr const char* kFilterFunction = "kadr_alpha_filter";
+/// The set to compile a kernel for, of what a scene requires: all of it, but for `direct`, which has a constant
+/// background and meets no lights.
+constexpr unsigned kernel_requirements(IntegratorKind integrator, unsigned required) {
+    return integrator == IntegratorKind::direct ? required & ~requirement::kEmitters : required;
+}
+
+/// The functions that rays ask about geometry of a type, by name as in hiprtFuncNameSet; null: none.
+struct GeometryFunctions {
+    const char* intersect;
+    const char* filter;
+};
+
+/// [geometry_type], for the one type of rays.
+inline constexpr GeometryFunctions kGeometryFunctions[geometry_type::kCount] = {
+    {nullptr, "kadr_alpha_filter"},                 // kFiltered
+    {"kadr_moving_triangle", "kadr_alpha_filter"},  // kMoving
+};
 
 /// What both run-time compilers are told beside C++17 and the include folders: the processor's arithmetic is neither
 /// fused nor does it keep denormals.

@@ -64,11 +64,13 @@ struct LaunchParams {
 /// is of no type (hiprtInvalidValue).
 namespace geometry_type {
 inline constexpr unsigned kFiltered = 0;  ///< triangles that let some rays pass: partial coverage, culled faces
-inline constexpr unsigned kCount = 1;
+inline constexpr unsigned kMoving = 1;    ///< boxes around triangles whose corners move while the shutter is open
+inline constexpr unsigned kCount = 2;
 }  // namespace geometry_type
 
 static_assert(sizeof(void*) == 8 && sizeof(long) == 8 && sizeof(bool) == 1, "the widths that host and device share");
-static_assert(sizeof(FilmBeauty) == 16 && sizeof(FilmSurface) == 40 && sizeof(FilmView) == 32, "copied to the host's film");
+static_assert(sizeof(FilmBeauty) == 16 && sizeof(FilmSurface) == 40 && sizeof(FilmView) == 32,
+              "copied to the host's film");
 static_assert(sizeof(LaunchCounters) == 32, "read back by the host");
 static_assert(sizeof(Material) == 212 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
                   sizeof(InstanceMotion) == 12 && sizeof(Affine) == 48 && sizeof(TransformKey) == 52 &&

@@ -14,23 +14,23 @@ inline constexpr unsigned kMaxLayers = 64;
 
 template <class F>
 struct DirectResult {
-    Vec3<F> emitted;
     PathState<F> next;  ///< straight on, behind a surface of partial coverage
     Mask<F> alive;
     Vec3<F> albedo, normal;
 };
 
 /// One hit under every light.
-/// @param shadow  called with a ShadowRay<F> for every light that can reach some lane
-template <class F, unsigned R, class Shadow>
+/// @param emitted  called once, with the light that the surface emits towards the viewer
+/// @param shadow   called after that with a ShadowRay<F> for every light that can reach some lane
+template <class F, unsigned R, class Emitted, class Shadow>
 SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit,
-                                       Mask<F> active, const Shadow& shadow) {
+                                       Mask<F> active, const Emitted& emitted, const Shadow& shadow) {
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
     const Interaction<F> it = make_interaction<F, R>(scene, hit, path.time, wo, active);
     const Vec3<F> covered = path.beta * it.alpha;
     DirectResult<F> result;
-    result.emitted = select(active, it.emission * covered, zero);
+    emitted(select(active, it.emission * covered, zero));
     result.albedo = it.base_color;
     result.normal = it.shading_normal;
     const Mask<F> lit = active & !it.unlit;

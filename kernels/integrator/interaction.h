@@ -162,7 +162,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
     Interaction<F> it;
     it.alpha = F(1.0f);
     it.unlit = Mask<F>(false);
-    const int some = __builtin_ctz(bits(active));  // inactive lanes shade what this one hit, and are masked out later
+    const int some = lowest_bit(bits(active));  // inactive lanes shade what this one hit, and are masked out later
     for (int i = 0; i < kLanes<F>; ++i) {
         const int from = lane(active, i) ? i : some;
         const unsigned instance_index = static_cast<unsigned>(lane(hit.instance, from));
@@ -252,7 +252,7 @@ template <class F>
 SHARED_FN void apply_maps(const SceneView& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side, Mask<F> active,
                           Interaction<F>& it) {
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
-        const int i = __builtin_ctz(todo);
+        const int i = lowest_bit(todo);
         const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
         const Vec2f uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)},
             uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};

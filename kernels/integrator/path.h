@@ -108,7 +108,7 @@ SHARED_FN F emitter_mis(const SceneView& scene, const PathState<F>& path, const 
                         Mask<F> active) {
     F density(0.0f);
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
-        const int i = __builtin_ctz(todo);
+        const int i = lowest_bit(todo);
         const unsigned instance = static_cast<unsigned>(lane(hit.instance, i));
         float per_area = scene.lights.instance_density[instance];
         if constexpr ((R & requirement::kDeformation) != 0) {
@@ -254,7 +254,7 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
     LightSample<F> s;
     s.radiance = {second[1], second[2], second[3]};
     for (unsigned todo = varies & bits(active); todo; todo &= todo - 1) {
-        const int i = __builtin_ctz(todo);
+        const int i = lowest_bit(todo);
         Vec3f at{}, facing{}, emission = chosen[i]->emission;
         look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i), at, facing, emission);
         if (scene.geometries[scene.instances[chosen[i]->instance].geometry].key_count > 1)

@@ -16,7 +16,7 @@ struct EnvironmentMap {
     const float* conditional = nullptr;  ///< [height][width + 1] cumulative probability within a row
     float rotate_rad = 0;
     Vec3f factor{1, 1, 1};        ///< colour * strength
-    float average_luminance = 0;  ///< over the sphere, before `factor`; see build_environment_tables
+    float average_luminance = 0;  ///< over the sphere, before `factor`; see environment_tables.h
 };
 
 /// arctan(y / x) over all quadrants, in turns (1 is 2 pi), in [-1/2, 1/2]; 0 for (0, 0). Error below 1e-7.
@@ -126,61 +126,12 @@ SHARED_FN void sample_environment(const EnvironmentMap& map, Vec2<F> u, Vec3<F>&
     // Azimuth 0 is -z. The image's rotation is undone with a sine and a cosine common to all lanes.
     const float turns = map.rotate_rad * (0.5f * kInvPi);
     float rotate_s, rotate_c;
-    sincos_2pi(turns - __builtin_floorf(turns), rotate_s, rotate_c);
+    sincos_2pi(turns - floor(turns), rotate_s, rotate_c);
     const F sin_azimuth = s * F(rotate_c) - c * F(rotate_s);
     const F cos_azimuth = c * F(rotate_c) + s * F(rotate_s);
     direction = normalize(Vec3<F>{sine * sin_azimuth, cosine, -sine * cos_azimuth});
     radiance = environment_texel(map, Vec2<F>{x, y}) * splat<F>(map.factor);
     pdf = texel_pdf<F>(map, row, column, sine);
-}
-
-/// Mean luminance of a texel's bilinear surface: of its 3 x 3 neighbourhood, with weights 1/8, 3/4, 1/8 each way.
-/// Positive wherever interpolation lets any light into the texel, which is what the density must be.
-SHARED_FN double texel_mean(const Vec3f* texels, int width, int height, int row, int column) {
-    double sum = 0.0;
-    for (int dy = -1; dy <= 1; ++dy) {
-        const int r = row + dy < 0 ? 0 : (row + dy >= height ? height - 1 : row + dy);
-        for (int dx = -1; dx <= 1; ++dx) {
-            const int c = (column + dx + width) % width;
-            const double weight = (dy == 0 ? 0.75 : 0.125) * (dx == 0 ? 0.75 : 0.125);
-            const double y = luminance(texels[static_cast<long>(r) * width + c]);
-            sum += y > 0.0 ? weight * y : 0.0;
-        }
-    }
-    return sum;
-}
-
-/// Tables of an image. Once per image, on the host.
-///
-/// @param marginal     [height + 1], out
-/// @param conditional  [height][width + 1], out
-/// @return mean luminance over the sphere: for EnvironmentMap::average_luminance
-SHARED_FN float build_environment_tables(const Vec3f* texels, int width, int height, float* marginal,
-                                         float* conditional) {
-    double total = 0.0, solid_angle = 0.0;
-    marginal[0] = 0.0f;
-    for (int row = 0; row < height; ++row) {
-        float* cdf = conditional + static_cast<long>(row) * (width + 1);
-        double sum = 0.0;
-        for (int column = 0; column < width; ++column) sum += texel_mean(texels, width, height, row, column);
-        double running = 0.0;
-        cdf[0] = 0.0f;
-        for (int column = 0; column < width; ++column) {
-            running += texel_mean(texels, width, height, row, column);
-            cdf[column + 1] = static_cast<float>(sum > 0.0 ? running / sum : (column + 1.0) / width);
-        }
-        cdf[width] = 1.0f;
-        const double sine = __builtin_sin(3.14159265358979323846 * (row + 0.5) / height);
-        total += sum * sine;
-        solid_angle += width * sine;
-        marginal[row + 1] = static_cast<float>(total);  // in place: a float of a sum in double, scaled below
-    }
-    for (int row = 1; row <= height; ++row) {
-        marginal[row] = total > 0.0 ? static_cast<float>(marginal[row] / total)
-                                    : static_cast<float>(row) / static_cast<float>(height);
-    }
-    marginal[height] = 1.0f;
-    return static_cast<float>(total / solid_angle);
 }
 
 }  // namespace kadr::kernels

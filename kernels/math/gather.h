@@ -8,15 +8,17 @@ namespace kadr::kernels {
 /// table[index] of every lane. All indices must be inside the table, those of idle lanes too.
 SHARED_FN float gather(const float* table, int index) { return table[index]; }
 
+#if !KADR_DEVICE_CODE
 template <int N>
 SHARED_FN Wide<N> gather(const float* table, WideInt<N> index) {
-#if defined(__AVX2__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+#if defined(__AVX2__)
     if constexpr (N == 8) return Wide<N>((typename Wide<N>::V)_mm256_i32gather_ps(table, (__m256i)index.v, 4));
 #endif
     Wide<N> result;
     for (int i = 0; i < N; ++i) result.v[i] = table[index.v[i]];
     return result;
 }
+#endif
 
 /// Three consecutive floats from table[index].
 template <class F>

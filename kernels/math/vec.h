@@ -1,12 +1,7 @@
 // Small vectors over a value type F: float (storage, the GPU, the portable form) or several lanes (see wide.h).
 #pragma once
 
-#if defined(__CUDACC__) || defined(__HIPCC__) || defined(__CUDACC_RTC__) || defined(__HIPCC_RTC__)
-#define SHARED_FN __host__ __device__ inline
-#else
-/// Functions that both the host and a GPU's run-time compiler build.
-#define SHARED_FN inline __attribute__((always_inline))
-#endif
+#include "kernels/math/platform.h"
 
 namespace kadr::kernels {
 

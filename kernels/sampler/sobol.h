@@ -18,10 +18,11 @@ SHARED_FN unsigned reverse_bits(unsigned x) {
     return (x >> 16) | (x << 16);
 }
 
+#if !KADR_DEVICE_CODE
 template <int N>
 SHARED_FN WideUInt<N> reverse_bits(WideUInt<N> x) {
     using U = WideUInt<N>;
-#if defined(__AVX2__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+#if defined(__AVX2__)
     if constexpr (N == 8) {  // nibbles by table, then the bytes of each lane
         const __m256i low_to_high = _mm256_broadcastsi128_si256(
             _mm_setr_epi8(0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16));
@@ -42,6 +43,7 @@ SHARED_FN WideUInt<N> reverse_bits(WideUInt<N> x) {
     x = ((x >> 8) & U(0x00ff00ffu)) | ((x & U(0x00ff00ffu)) << 8);
     return (x >> 16) | (x << 16);
 }
+#endif
 
 /// A well-mixed permutation of 32 bits.  Source: Wellons 2018, "lowbias32".
 template <class U>

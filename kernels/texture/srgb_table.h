@@ -3,10 +3,12 @@
 // clang-format off
 #pragma once
 
+#include "kernels/math/platform.h"
+
 namespace kadr::kernels {
 
 /// Linear value of a byte.
-inline constexpr float kSrgbToLinear[256] = {
+SHARED_TABLE float kSrgbToLinear[256] = {
     0.0000000f, 0.0003035f, 0.0006071f, 0.0009106f, 0.0012141f, 0.0015176f, 0.0018212f, 0.0021247f,
     0.0024282f, 0.0027317f, 0.0030353f, 0.0033465f, 0.0036765f, 0.0040247f, 0.0043914f, 0.0047770f,
     0.0051815f, 0.0056054f, 0.0060488f, 0.0065121f, 0.0069954f, 0.0074990f, 0.0080232f, 0.0085681f,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/camera/camera.h"
-#include "kernels/camera/filter.h"
+#include "kernels/camera/filter_table.h"
 #include "kernels/statistics.h"
 
 namespace kadr::kernels {

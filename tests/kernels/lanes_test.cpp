@@ -4,7 +4,9 @@
 #include <array>
 #include <cstring>
 
+#include "kernels/camera/filter_table.h"
 #include "kernels/lanes_cases.h"
+#include "kernels/light/environment_tables.h"
 #include "kernels/statistics.h"
 
 namespace kadr::kernels {

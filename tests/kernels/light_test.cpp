@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/light/environment.h"
+#include "kernels/light/environment_tables.h"
 #include "kernels/light/light.h"
 #include "kernels/statistics.h"
 

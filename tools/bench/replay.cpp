@@ -16,6 +16,7 @@
 #include "device/embree/embree_scene.h"
 #include "device/embree/tile_job.h"
 #include "frame/snapshot.h"
+#include "kernels/camera/filter_table.h"
 #include "shot/shot_parser.h"
 
 namespace kadr {

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "device/embree/embree_scene.h"
 #include "device/embree/tile_job.h"
+#include "kernels/camera/filter_table.h"
 #include "kernels/sampler/sobol.h"
 
 namespace kadr {

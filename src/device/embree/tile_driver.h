@@ -11,10 +11,11 @@
 
 #include "device/embree/path_columns.h"
 #include "device/embree/tile_job.h"
-#include "kernels/camera/camera.h"
-#include "kernels/camera/shutter.h"
+#include "kernels/integrator/camera_path.h"
+#include "kernels/integrator/coverage.h"
 #include "kernels/integrator/direct.h"
 #include "kernels/integrator/path.h"
+#include "kernels/integrator/surface_layers.h"
 
 // Compiled once per instruction set: everything lives in a namespace of its own, so that the linker never takes an AVX2
 // body for a portable one.
@@ -80,32 +81,13 @@ private:
             if (job.active)
                 for (int i = 0; i < N; ++i)
                     if (!job.is_active(lane(x, i), lane(y, i))) set_lane(active, i, false);
-            const Sampler<F> sampler = make_sampler<F>(x, y, sample, job.seed);
-            Vec2<F> offset{F(0.0f), F(0.0f)}, lens{F(0.5f), F(0.5f)};
-            F weight(1.0f), time(0.0f), light(1.0f), u_time(0.0f);
-            if (!job.centred) {
-                sample_filter(*job.filter, sampler.get_2d(UInt<F>(dimension::kFilter)), offset, weight);
-                lens = sampler.get_2d(UInt<F>(dimension::kLens));
-                u_time = sampler.get_1d(UInt<F>(dimension::kTime));
-            }
-            const F line = line_of_pixel<F>(job.shutter->direction, x, y, scene.settings.width, scene.settings.height);
-            sample_shutter(*job.shutter, line, u_time, time, light);
-            const Vec2<F> film{F(x) + F(0.5f) + offset.x, F(y) + F(0.5f) + offset.y};
-            PathState<F> path;
-            camera_ray(scene.camera, scene.settings.width, scene.settings.height, film, time, lens, path.origin,
-                       path.direction);
-            path.time = time;
-            path.beta = {F(1.0f), F(1.0f), F(1.0f)};
-            path.bsdf_pdf = F(0.0f);
-            path.light_weight = F(0.0f);
-            path.sampler_key = sampler.key;
-            path.sample = sampler.index;
-            path.bounces = UInt<F>(0u);
+            const CameraSample<F> start =
+                start_path<F>(scene, *job.filter, *job.shutter, job.seed, job.centred, x, y, sample);
             for (int i = 0; i < N && first + i < total; ++i) {
                 const int s = first + i;
                 for (int c = 0; c < 3; ++c) result_->radiance[c][s] = 0;
-                result_->weight[s] = lane(weight, i);
-                result_->light[s] = lane(light, i);
+                result_->weight[s] = lane(start.weight, i);
+                result_->light[s] = lane(start.light, i);
                 result_->alpha[s] = scene.lights.environment_visible ? 1.0f : 0.0f;
                 if (job.surface_layers) {
                     for (int c = 0; c < 3; ++c) result_->albedo[c][s] = result_->normal[c][s] = 0;
@@ -113,7 +95,7 @@ private:
                     result_->motion[0][s] = result_->motion[1][s] = 0;
                 }
             }
-            append_path<F>(out, path, slot, bits(active & (light > F(0.0f))));
+            append_path<F>(out, start.path, slot, bits(active & (start.light > F(0.0f))));
         }
     }
 
@@ -204,8 +186,7 @@ private:
         context.keep_blend = kIntegrator == IntegratorKind::direct;
         if constexpr ((R & requirement::kMaps) != 0)
             for (int i = 0; i < N; ++i)
-                context.key[i] = lane(path.sampler_key, i) ^ (lane(path.sample, i) * 0x9E3779B9u) ^
-                                 (lane(path.bounces, i) * 0x85EBCA6Bu);
+                context.key[i] = coverage_key(lane(path.sampler_key, i), lane(path.sample, i), lane(path.bounces, i));
         hit.distance = F(kInfinity);
         hit.instance = Int<F>(0);
         hit.primitive = Int<F>(0);
@@ -317,8 +298,8 @@ private:
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
         } else {
             const DirectResult<F> vertex = shade_direct<F, R>(
-                scene, path, hit, active, [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
-            add(slot, vertex.emitted, bits(active));
+                scene, path, hit, active, [&](Vec3<F> L) { add(slot, L, bits(active)); },
+                [&](const ShadowRay<F>& ray) { queue_shadow(ray, path, slot); });
             surface(path, hit, vertex.albedo, vertex.normal, slot, active);
             append_path<F>(*next_, vertex.next, slot, bits(vertex.alive));
         }
@@ -338,49 +319,17 @@ private:
             result_->normal[0][s] = lane(normal.x, i);
             result_->normal[1][s] = lane(normal.y, i);
             result_->normal[2][s] = lane(normal.z, i);
-            result_->depth[s] = lane(hit.distance, i) * view_cosine(path, i);
+            const Vec3f direction{lane(path.direction.x, i), lane(path.direction.y, i), lane(path.direction.z, i)};
+            result_->depth[s] =
+                lane(hit.distance, i) * view_cosine(job_->scene->camera, lane(path.time, i), direction);
             if (job_->scene->previous_matrices) {
-                const Vec2f moved =
-                    motion(static_cast<unsigned>(lane(hit.instance, i)), static_cast<unsigned>(lane(hit.primitive, i)),
-                           lane(hit.u, i), lane(hit.v, i));
+                const Vec2f moved = motion_of_point(*job_->scene, static_cast<unsigned>(lane(hit.instance, i)),
+                                                    static_cast<unsigned>(lane(hit.primitive, i)), lane(hit.u, i),
+                                                    lane(hit.v, i));
                 result_->motion[0][s] = moved.x;
                 result_->motion[1][s] = moved.y;
             }
         }
-    }
-
-    /// Pixels that a point of a surface moved since the previous frame, both taken at the shutter's opening.
-    Vec2f motion(unsigned instance, unsigned primitive, float u, float v) const {
-        const SceneView& scene = *job_->scene;
-        const Geometry& g = scene.geometries[scene.instances[instance].geometry];
-        const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
-        const Vec3f opening = barycentric(g.vertices[index[0]].position, g.vertices[index[1]].position,
-                                          g.vertices[index[2]].position, u, v);
-        const Vec3f earlier =
-            g.previous ? barycentric(g.previous[index[0]], g.previous[index[1]], g.previous[index[2]], u, v) : opening;
-        const auto place = [&](const Affine& a, Vec3f p) {
-            return Vec3f{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3],
-                         a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
-                         a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
-        };
-        const int width = scene.settings.width, height = scene.settings.height;
-        const Vec2f now = project<float>(scene.camera, width, height, place(transform_at(scene, instance, 0.0f), opening), 0.0f);
-        const Vec2f before = project<float>(scene.previous_camera, width, height,
-                                            place(scene.previous_matrices[instance], earlier), 0.0f);
-        return {now.x - before.x, now.y - before.y};
-    }
-
-    /// Cosine between the ray and the view axis, which makes a distance a depth.
-    float view_cosine(const PathState<F>& path, int i) const {
-        const Camera& camera = job_->scene->camera;
-        const float position = lane(path.time, i) * static_cast<float>(camera.key_count - 1);
-        const int k =
-            position < static_cast<float>(camera.key_count - 1) ? static_cast<int>(position) : camera.key_count - 1;
-        const float* q = camera.keys[k].rotation;  // the nearer key: within the motion tolerance of the true axis
-        const Vec3f axis{-2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
-                         -(1 - 2 * (q[0] * q[0] + q[1] * q[1]))};
-        return axis.x * lane(path.direction.x, i) + axis.y * lane(path.direction.y, i) +
-               axis.z * lane(path.direction.z, i);
     }
 
     void queue_shadow(const ShadowRay<F>& ray, const PathState<F>& path, UInt<F> slot) {
