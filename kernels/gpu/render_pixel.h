@@ -106,10 +106,9 @@ private:
     }
 
     /// Adds what arrives along a shadow ray.
-    SHARED_FN void trace_shadow(ShadowRay<float> ray, LaunchCounters& counters) {
+    SHARED_FN void trace_shadow(const ShadowRay<float>& ray, LaunchCounters& counters) {
         if (!(is_finite(ray.origin) && is_finite(ray.direction) && is_finite(ray.radiance))) return drop();
         ++counters.rays;
-        ray.distance = min(ray.distance, kInfinity);
         float transmittance = 1.0f;
         if (!tracer_.shadow(ray, path_.time, transmittance)) return drop();
         if (transmittance > 0.0f) add(ray.radiance * transmittance);

@@ -123,8 +123,10 @@ inline const std::vector<VariedScene>& varied_scenes() {
                  {place({-1, 0, 0}), glm::rotate(place({0, 0, 0}), 0.6, glm::dvec3(0, 1, 0)), place({1, 0, 0})});
              add_floor(s, false);
          }},
-        {"glowing, under several lights",
+        {"glowing, under several lights, clamped",
          [](SmallScene& s) {
+             s.snapshot.settings.clamp_direct = 0.6f;
+             s.snapshot.settings.clamp_indirect = 0.2f;
              kernels::Material glow = shiny;
              glow.emission = {0.3f, 0.2f, 0.1f};
              s.add_instance(s.add_mesh(unit_sphere(16)), glow, glm::dmat4(1));
@@ -180,15 +182,16 @@ inline const std::vector<VariedScene>& varied_scenes() {
              shutter.plain = false;
              shutter.direction = kernels::RollingDirection::down;
              shutter.first_open = -0.2f;
-             shutter.delay = 0.9f;
+             shutter.delay = 1.4f;  // the last lines are closed
              shutter.length = 0.4f;
              for (int i = 0; i <= kernels::Shutter::kIntervals; ++i) {
                  const float x = static_cast<float>(i) / kernels::Shutter::kIntervals;
                  shutter.passed[i] = x * x * (3 - 2 * x);
              }
          }},
-        {"culled from behind, with the motion since the frame before",
+        {"culled from behind before nothing, with the motion since the frame before",
          [](SmallScene& s) {
+             s.snapshot.environment.visible = false;
              s.snapshot.settings.cull_backfaces = true;
              s.add_instance(s.add_mesh(unit_square()), shiny, turned(kPi - 0.4) * place({0.5, 0, 0.5}), false);
              s.add_instance(s.add_mesh(unit_sphere(16)), shiny, place({-0.5, 0, 0}), false);

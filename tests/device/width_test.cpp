@@ -31,7 +31,7 @@ TEST(Width, EveryPixelIsTheSameInOneLaneAndInEight) {
             // No tolerance: both forms are one source without contraction to fused operations, the order of additions
             // to a path is fixed, and Embree's packets meet what its single rays meet.
             EXPECT_EQ(one.image.pixels, s.render(16, 1, 8, layers).image.pixels) << content.name;
-            EXPECT_GT(one.mean(), 0.05) << content.name;
+            EXPECT_GT(one.mean(), 0.03) << content.name;  // not black: half the lines of the rolling shutter see little
         }
 }
 

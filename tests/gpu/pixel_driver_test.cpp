@@ -41,8 +41,8 @@ struct DeviceFilm {
         }
         if (layers) surface_.resize(pixels_);
     }
-    kernels::FilmView view(int half) {
-        return {beauty_[half].data(), samples_[half].data(), weights_[half].data(),
+    kernels::FilmView view(int half, bool weighted) {
+        return {beauty_[half].data(), samples_[half].data(), weighted ? weights_[half].data() : nullptr,
                 surface_.empty() ? nullptr : surface_.data()};
     }
     void copy_to(Film& film) const {
@@ -51,7 +51,7 @@ struct DeviceFilm {
             for (int half = 0; half < Film::kHalves; ++half) {
                 std::memcpy(static_cast<void*>(&film.beauty(x, y, half)), &beauty_[half][i], sizeof(Film::Beauty));
                 film.samples(x, y, half) = samples_[half][i];
-                film.weight(x, y, half) = weights_[half][i];
+                if (film.weighted()) film.weight(x, y, half) = weights_[half][i];
             }
             if (!surface_.empty())
                 std::memcpy(static_cast<void*>(&film.surface(x, y)), &surface_[i], sizeof(Film::Surface));
@@ -109,14 +109,25 @@ void launch(IntegratorKind integrator, unsigned requirements, const kernels::Lau
     throw std::runtime_error("the test has no kernel for the set " + std::to_string(requirements));
 }
 
-constexpr int kSamples = 7;  ///< of each half, in two launches
+/// What is asked of a frame.
+struct Request {
+    FilmLayers layers;
+    int samples = 7;  ///< of each half
+    int halves = Film::kHalves;
+    bool weighted = true;
+    std::vector<std::uint8_t> active;  ///< of the last half; empty: all
+    bool centred = false;
+    const std::uint8_t* active_of(int half) const {
+        return half == halves - 1 && !active.empty() ? active.data() : nullptr;
+    }
+};
 
 struct Rendered {
     Image image;
     std::uint64_t rays, samples, dropped;
 };
 
-Rendered render_by_device(SmallScene& s, FilmLayers layers) {
+Rendered render_by_device(SmallScene& s, const Request& wanted) {
     DeviceRequest request;
     request.name = "cpu";
     request.threads = 2;
@@ -124,22 +135,43 @@ Rendered render_by_device(SmallScene& s, FilmLayers layers) {
     const DeviceChoice choice = make_device(request);
     choice.device->load(s.scene, s.environment.width > 0 ? &s.environment : nullptr);
     choice.device->set_frame(s.snapshot);
-    Film film(s.snapshot.settings.width, s.snapshot.settings.height, layers);
-    film.clear(true);
+    Film film(s.snapshot.settings.width, s.snapshot.settings.height, wanted.layers);
+    film.clear(wanted.weighted);
     Pass pass;
-    pass.sample_count = kSamples;
-    pass.total_samples = 2 * kSamples;
-    for (pass.half = 0; pass.half < Film::kHalves; ++pass.half) choice.device->render(pass, film);
+    pass.sample_count = wanted.samples;
+    pass.total_samples = wanted.samples * wanted.halves;
+    for (pass.half = 0; pass.half < wanted.halves; ++pass.half) {
+        pass.active = wanted.active_of(pass.half);
+        choice.device->render(pass, film);
+    }
     const DeviceStatistics statistics = choice.device->statistics();
     return {film.develop(), statistics.rays, statistics.pixel_samples, statistics.dropped_samples};
 }
 
-Rendered render_by_launches(SmallScene& s, FilmLayers layers) {
+/// All samples of one half: in two launches of each of two rectangles.
+void launch_half(kernels::LaunchParams& params, const Request& wanted, const EmbreeScene& scene) {
+    const kernels::Settings& settings = params.scene.settings;
+    const unsigned set = kernels::kernel_requirements(settings.integrator, scene.requirements());
+    const int split = wanted.samples / 2;
+    params.x1 = settings.width;
+    for (const int begin : {0, split}) {
+        params.first_sample = begin;
+        params.sample_count = begin == 0 && split > 0 ? split : wanted.samples - split;
+        for (const int y0 : {0, settings.height / 3}) {
+            params.y0 = y0;
+            params.y1 = y0 == 0 ? settings.height / 3 : settings.height;
+            launch(settings.integrator, set, params, scene);
+        }
+        if (split == 0) return;
+    }
+}
+
+Rendered render_by_launches(SmallScene& s, const Request& wanted) {
     const EmbreeDeviceHandle device(rtcNewDevice(nullptr));
     EmbreeScene scene(device.get(), s.scene, s.environment.width > 0 ? &s.environment : nullptr);
     scene.set_frame(s.snapshot);
     const int width = s.snapshot.settings.width, height = s.snapshot.settings.height;
-    DeviceFilm device_film(width, height, layers.any_surface());
+    DeviceFilm device_film(width, height, wanted.layers.any_surface());
     kernels::FilterTable filter{};
     build_filter(s.snapshot.settings.filter, s.snapshot.settings.filter_radius, filter);
     kernels::LaunchCounters counters{};
@@ -148,45 +180,98 @@ Rendered render_by_launches(SmallScene& s, FilmLayers layers) {
     params.filter = &filter;
     params.shutter = &s.snapshot.shutter;
     params.counters = &counters;
+    params.centred = wanted.centred;
     const FlushDenormals flush;
-    for (int half = 0; half < Film::kHalves; ++half) {
-        params.film = device_film.view(half);
+    for (int half = 0; half < wanted.halves; ++half) {
+        params.film = device_film.view(half, wanted.weighted);
         params.seed = kernels::seed_of_half(s.snapshot.settings.seed, half);
-        for (const int begin : {0, 3}) {
-            params.first_sample = begin;
-            params.sample_count = begin == 0 ? 3 : kSamples - 3;
-            for (const int y0 : {0, height / 3}) {  // two rectangles
-                params.x1 = width;
-                params.y0 = y0;
-                params.y1 = y0 == 0 ? height / 3 : height;
-                const IntegratorKind integrator = s.snapshot.settings.integrator;
-                launch(integrator, kernels::kernel_requirements(integrator, scene.requirements()), params, scene);
-            }
-        }
+        params.active = wanted.active_of(half);
+        launch_half(params, wanted, scene);
     }
-    Film film(width, height, layers);
-    film.clear(true);
+    Film film(width, height, wanted.layers);
+    film.clear(wanted.weighted);
     device_film.copy_to(film);
     return {film.develop(), counters.rays, counters.samples, counters.dropped};
+}
+
+/// No tolerance: one source, one tracer, one order of additions; and the set that is compiled here is exactly what the
+/// scene requires, where the device takes a larger one.
+void expect_same(SmallScene& s, const Request& wanted, const std::string& name) {
+    s.snapshot.geometry_key = 1;
+    const Rendered device = render_by_device(s, wanted), launches = render_by_launches(s, wanted);
+    EXPECT_EQ(launches.image.pixels, device.image.pixels) << name;
+    EXPECT_EQ(launches.rays, device.rays) << name;
+    EXPECT_EQ(launches.samples, device.samples) << name;
+    EXPECT_EQ(launches.dropped, device.dropped) << name;
 }
 
 class PixelDriver : public testing::TestWithParam<IntegratorKind> {};
 
 TEST_P(PixelDriver, LeavesTheFilmOfTheProcessorsDevice) {
-    FilmLayers layers;
-    layers.depth = layers.normal = layers.albedo = layers.motion = layers.samples = true;
+    Request wanted;
+    wanted.layers.depth = wanted.layers.normal = wanted.layers.albedo = wanted.layers.motion = true;
+    wanted.layers.samples = true;
     for (const VariedScene& content : varied_scenes()) {
         SmallScene s = sunlit(GetParam());
         content.add(s);
-        s.snapshot.geometry_key = 1;
-        const Rendered device = render_by_device(s, layers), launches = render_by_launches(s, layers);
-        // No tolerance: one source, one tracer, one order of additions; and the set that is compiled here is exactly
-        // what the scene requires, where the device takes a larger one.
-        EXPECT_EQ(launches.image.pixels, device.image.pixels) << content.name;
-        EXPECT_EQ(launches.rays, device.rays) << content.name;
-        EXPECT_EQ(launches.samples, device.samples) << content.name;
-        EXPECT_EQ(launches.dropped, device.dropped) << content.name;
+        expect_same(s, wanted, content.name);
     }
+}
+
+TEST_P(PixelDriver, LeavesPixelsAloneThatHaveSamplesEnough) {
+    SmallScene s = sunlit(GetParam());
+    varied_scenes()[0].add(s);
+    Request wanted;
+    wanted.weighted = false;
+    wanted.layers.samples = true;
+    for (int i = 0; i < s.snapshot.settings.width * s.snapshot.settings.height; ++i)
+        wanted.active.push_back(i % 3 != 0);
+    expect_same(s, wanted, "every third pixel is left alone");
+}
+
+TEST(PixelDriverAlone, TakesItsOneSampleInTheMiddle) {
+    SmallScene s = sunlit(IntegratorKind::direct);
+    varied_scenes().back().add(s);
+    s.snapshot.camera_keys[0].lens_radius = 0.5f;
+    s.snapshot.settings.filter_radius = 3;
+    Request wanted;
+    wanted.samples = wanted.halves = 1;
+    wanted.weighted = false;
+    wanted.centred = true;
+    expect_same(s, wanted, "one sample");
+}
+
+/// Meets nothing, and loses every third ray.
+struct LossyTracer {
+    int rays = 0;
+    bool closest(const kernels::PathState<float>&, kernels::Hit<float>&) { return ++rays % 3 != 0; }
+    bool shadow(const kernels::ShadowRay<float>&, float, float&) { return true; }
+};
+
+TEST(PixelDriverAlone, DropsSamplesWhoseRayIsLost) {
+    SmallScene s = sunlit(IntegratorKind::path);
+    kernels::FilterTable filter{};
+    build_filter(kernels::FilterKind::box, 0.5f, filter);
+    DeviceFilm film(1, 1, false);
+    kernels::LaunchCounters counters{};
+    kernels::LaunchParams params{};
+    params.scene.settings.width = params.scene.settings.height = params.x1 = params.y1 = 1;
+    params.scene.camera = s.snapshot.camera;
+    params.scene.camera.keys = s.snapshot.camera_keys.data();
+    params.scene.lights.environment = {1, 2, 3};
+    params.scene.lights.environment_visible = true;
+    params.filter = &filter;
+    params.shutter = &s.snapshot.shutter;
+    params.film = film.view(0, false);
+    params.sample_count = 9;
+    LossyTracer tracer;
+    kernels::PixelDriver<0, IntegratorKind::path, LossyTracer>(params, tracer, 0, 0).render(counters);
+    EXPECT_EQ(counters.rays, 9u);
+    EXPECT_EQ(counters.samples, 6u);
+    EXPECT_EQ(counters.dropped, 3u);
+    EXPECT_EQ(*params.film.samples, 6u);
+    EXPECT_EQ(params.film.beauty->r, 6.0f);
+    EXPECT_EQ(params.film.beauty->b, 18.0f);
 }
 
 INSTANTIATE_TEST_SUITE_P(PathAndDirect, PixelDriver, testing::Values(IntegratorKind::path, IntegratorKind::direct));
