@@ -23,6 +23,7 @@ std::vector<std::string> unproven_on_gpu() {
         "speed: rays, building structures, what a frame costs beside its rays",
         "that launches stay below 0.1 s and that Ctrl-C is answered within 0.2 s",
         "the choice of build qualities: high and made small for rigid meshes, fast for bending ones and for all instances",
+        "meshes that bend while the shutter is open, which are boxes to HIPRT",
         "when memory runs out: smaller tiles, structures of lower quality",
     };
 }

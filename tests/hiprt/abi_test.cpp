@@ -41,6 +41,7 @@ TEST(HiprtAbi, Sizes) {
     EXPECT_EQ(sizeof(hiprt::ContextCreationInput), sizeof(hiprtContextCreationInput));
     EXPECT_EQ(sizeof(hiprt::BuildOptions), sizeof(hiprtBuildOptions));
     EXPECT_EQ(sizeof(hiprt::TriangleMesh), sizeof(hiprtTriangleMeshPrimitive));
+    EXPECT_EQ(sizeof(hiprt::AabbList), sizeof(hiprtAABBListPrimitive));
     EXPECT_EQ(sizeof(hiprt::NodeList), sizeof(hiprtBvhNodeList));
     EXPECT_EQ(sizeof(hiprt::GeometryBuildInput), sizeof(hiprtGeometryBuildInput));
     EXPECT_EQ(sizeof(hiprt::Instance), sizeof(hiprtInstance));
@@ -69,6 +70,10 @@ TEST(HiprtAbi, Offsets) {
     EXPECT_MEMBER(TriangleMesh, triangle_stride, hiprtTriangleMeshPrimitive, triangleStride);
     EXPECT_MEMBER(TriangleMesh, pair_indices, hiprtTriangleMeshPrimitive, trianglePairIndices);
     EXPECT_MEMBER(TriangleMesh, pair_count, hiprtTriangleMeshPrimitive, trianglePairCount);
+    EXPECT_MEMBER(AabbList, boxes, hiprtAABBListPrimitive, aabbs);
+    EXPECT_MEMBER(AabbList, box_count, hiprtAABBListPrimitive, aabbCount);
+    EXPECT_MEMBER(AabbList, box_stride, hiprtAABBListPrimitive, aabbStride);
+    EXPECT_MEMBER(GeometryBuildInput, list, hiprtGeometryBuildInput, primitive.aabbList);
     EXPECT_MEMBER(NodeList, node_count, hiprtBvhNodeList, nodeCount);
     EXPECT_MEMBER(GeometryBuildInput, type, hiprtGeometryBuildInput, type);
     EXPECT_MEMBER(GeometryBuildInput, geometry_type, hiprtGeometryBuildInput, geomType);
@@ -107,6 +112,7 @@ TEST(HiprtAbi, Constants) {
     EXPECT_EQ(static_cast<int>(hiprt::BuildOperation::build), hiprtBuildOperationBuild);
     EXPECT_EQ(static_cast<int>(hiprt::BuildOperation::update), hiprtBuildOperationUpdate);
     EXPECT_EQ(static_cast<int>(hiprt::PrimitiveType::triangle_mesh), hiprtPrimitiveTypeTriangleMesh);
+    EXPECT_EQ(static_cast<int>(hiprt::PrimitiveType::aabb_list), hiprtPrimitiveTypeAABBList);
     EXPECT_EQ(static_cast<int>(hiprt::InstanceType::geometry), hiprtInstanceTypeGeometry);
     EXPECT_EQ(static_cast<int>(hiprt::FrameType::srt), hiprtFrameTypeSRT);
     EXPECT_EQ(static_cast<int>(hiprt::FrameType::matrix), hiprtFrameTypeMatrix);

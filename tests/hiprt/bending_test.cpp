@@ -121,17 +121,37 @@ TEST(BendingOnGpu, AFrameThatFailedLeavesNoVerticesBehind) {
     EXPECT_EQ(b.complaints(), "");
 }
 
-TEST(BendingOnGpu, BlurIsRefusedByName) {
+TEST(BendingOnGpu, BlurredMeshesAreBoxesAroundAllThatTheirTrianglesPass) {
     Bending b;
-    try {
-        b.show(1, 1, 2);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(
-            error.diagnostics()[0].text(),
-            "error: --device hiprt: the mesh square bends while the shutter is open\n  on GPUs bending meshes are not "
-            "blurred yet; use --device cpu, or a shutter of 0 deg");
+    b.show(1, 1);
+    b.show(2, 5, 3);  // the third corner begins at 5, 5 and ends at 1, 1
+    b.render();
+    ASSERT_EQ(b.gpu.hiprt.geometries.size(), 1u);
+    const FakeHiprt::GeometryRecord& record = b.gpu.hiprt.geometries.begin()->second;
+    ASSERT_EQ(record.input.type, hiprt::PrimitiveType::aabb_list);
+    EXPECT_EQ(record.input.geometry_type, kernels::geometry_type::kMoving);
+    ASSERT_EQ(record.input.list.box_count, 2u);
+    const float* box = static_cast<const float*>(record.input.list.boxes);
+    for (int c = 0; c < 2; ++c) {
+        EXPECT_LT(box[c], -1);
+        EXPECT_NEAR(box[c], -1, 1e-5);
+        EXPECT_GT(box[3 + c], 5);
+        EXPECT_NEAR(box[3 + c], 5, 1e-5);
     }
+    const kernels::LaunchParams& launch = b.gpu.launches.back();
+    EXPECT_NE(launch.functions, nullptr);
+    const kernels::Geometry& geometry = launch.scene.geometries[launch.scene.instances[0].geometry];
+    EXPECT_EQ(geometry.key_count, 3u);
+    EXPECT_EQ(geometry.vertices[2].position.x, 5.0f);
+    EXPECT_EQ(geometry.vertices[2 * 4 + 2].position.x, 1.0f);
+    EXPECT_THAT(b.gpu.hiprt.modules.begin()->second.source, ::testing::HasSubstr("KADR_REQUIREMENTS 10u"));
+    // New boxes every frame, in the same place.
+    b.show(3, 7, 3);
+    EXPECT_NEAR(static_cast<const float*>(b.gpu.hiprt.geometries.begin()->second.input.list.boxes)[3], 7, 1e-4);
+    EXPECT_EQ(b.counts(), (StructureCounts{2, 0, 0}));
+    b.show(4, 1);
+    EXPECT_EQ(b.gpu.hiprt.geometries.begin()->second.input.type, hiprt::PrimitiveType::triangle_mesh);
+    b.render();
     EXPECT_EQ(b.complaints(), "");
 }
 

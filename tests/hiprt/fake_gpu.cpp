@@ -1,5 +1,6 @@
 #include "fake_gpu.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -126,9 +127,10 @@ void FakeGpu::check_scene(const SceneView& scene, std::size_t instance_count) {
 }
 
 void FakeGpu::check_geometry(const Geometry& geometry) {
-    expect(geometry.vertices, geometry.vertex_count, "vertices");
+    const std::size_t keys = std::max(geometry.key_count, 1u);
+    expect(geometry.vertices, keys * geometry.vertex_count, "vertices");
     expect(geometry.indices, std::size_t{3} * geometry.triangle_count, "indices");
-    if (geometry.tangents) expect(geometry.tangents, geometry.vertex_count, "tangents");
+    if (geometry.tangents) expect(geometry.tangents, keys * geometry.vertex_count, "tangents");
     if (geometry.uv1) expect(geometry.uv1, geometry.vertex_count, "second texture coordinates");
     if (geometry.colors) expect(geometry.colors, geometry.vertex_count, "colours");
     if (geometry.previous) expect(geometry.previous, geometry.vertex_count, "previous positions");

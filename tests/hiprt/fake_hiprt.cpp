@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "frame/decompose.h"
+#include "kernels/gpu/launch_params.h"
 
 namespace kadr::test {
 namespace {
@@ -24,6 +25,24 @@ std::vector<T> read(const void* from, std::size_t count) {
     std::vector<T> values(count);
     std::memcpy(values.data(), from, count * sizeof(T));
     return values;
+}
+
+std::size_t primitives_of(const hiprt::GeometryBuildInput& input) {
+    return input.type == hiprt::PrimitiveType::aabb_list ? input.list.box_count : input.mesh.triangle_count;
+}
+
+/// What sizes are asked for, and builds recognised, by.
+std::pair<void*, std::size_t> key_of(const hiprt::GeometryBuildInput& input) {
+    const bool boxes = input.type == hiprt::PrimitiveType::aabb_list;
+    return {boxes ? input.list.boxes : input.mesh.vertices, primitives_of(input)};
+}
+
+std::vector<Range> inputs_of(const hiprt::GeometryBuildInput& input) {
+    if (input.type == hiprt::PrimitiveType::aabb_list)
+        return {{number_of(input.list.boxes), std::size_t{input.list.box_count} * input.list.box_stride}};
+    const hiprt::TriangleMesh& mesh = input.mesh;
+    return {{number_of(mesh.vertices), std::size_t{mesh.vertex_count} * mesh.vertex_stride},
+            {number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride}};
 }
 
 struct Pose {
@@ -176,8 +195,8 @@ struct FakeEntryPoints {
         bytes = 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             f.check_mesh(inputs[i], options);
-            const std::size_t own = 64 + inputs[i].mesh.triangle_count * f.temporary_per_primitive;
-            f.geometry_sizes_[{inputs[i].mesh.vertices, inputs[i].mesh.triangle_count}] = {options, own};
+            const std::size_t own = 64 + primitives_of(inputs[i]) * f.temporary_per_primitive;
+            f.geometry_sizes_[key_of(inputs[i])] = {options, own};
             bytes = std::max(bytes, own);
         }
         return Error::success;
@@ -198,16 +217,13 @@ struct FakeEntryPoints {
                 return Error::invalid_parameter;
             }
             FakeHiprt::GeometryRecord& record = found->second;
-            const hiprt::TriangleMesh &mesh = inputs[i].mesh, &created_for = record.input.mesh;
             if (!(record.options == options)) f.fault("build_geometries: other flags than it was created with");
-            if (mesh.triangle_count != created_for.triangle_count)
+            if (inputs[i].type != record.input.type || primitives_of(inputs[i]) != primitives_of(record.input))
                 f.fault("build_geometries: another size than it was created for");
-            std::vector<Range> uses = {
-                {number_of(geometries[i]), record.bytes},
-                {number_of(mesh.vertices), std::size_t{mesh.vertex_count} * mesh.vertex_stride},
-                {number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride}};
+            std::vector<Range> uses = {{number_of(geometries[i]), record.bytes}};
+            for (const Range& range : inputs_of(inputs[i])) uses.push_back(range);
             if (operation == hiprt::BuildOperation::build) {
-                const auto size = f.geometry_sizes_.find({mesh.vertices, mesh.triangle_count});
+                const auto size = f.geometry_sizes_.find(key_of(inputs[i]));
                 if (size == f.geometry_sizes_.end() || !(size->second.options == options))
                     f.fault("build_geometries: its temporary size was never asked for with these flags");
                 else {
@@ -344,7 +360,7 @@ struct FakeEntryPoints {
                                     std::uint32_t ray_type, hiprt::FunctionData) {
         FakeHiprt& f = of(context, "set_function_table");
         if (f.runtime_.begin_call("set_function_table")) return Error::internal;
-        if (f.tables.count(table) == 0 || geometry_type != 0 || ray_type != 0)
+        if (f.tables.count(table) == 0 || geometry_type >= kernels::geometry_type::kCount || ray_type != 0)
             f.fault("set_function_table: no such entry");
         return Error::success;
     }
@@ -373,11 +389,15 @@ struct FakeEntryPoints {
         if ((f.log_level & hiprt::log_level::kErrors) == 0)
             f.fault("build_trace_kernels: compile errors would not be seen");
         if (geometry_types * ray_types != 0 && !function_names) f.fault("build_trace_kernels: functions without names");
-        FakeHiprt::ModuleRecord module{source, {}};
+        FakeHiprt::ModuleRecord module{source, {}, {}};
+        for (std::uint32_t i = 0; i < geometry_types * ray_types; ++i)
+            for (const char* name : {function_names[i].intersect, function_names[i].filter})
+                module.functions.emplace_back(name ? name : "");
         for (std::uint32_t i = 0; i < option_count; ++i) module.options.emplace_back(options[i]);
         // The library keeps modules by their name alone.
         const auto [at, is_new] = f.modules.emplace(module_name, module);
-        if (!is_new && (at->second.source != module.source || at->second.options != module.options))
+        if (!is_new && (at->second.source != module.source || at->second.options != module.options ||
+                        at->second.functions != module.functions))
             f.fault("build_trace_kernels: one module name for two sources");
         for (std::uint32_t i = 0; i < function_count; ++i) functions[i] = f.runtime_.make_function(names[i]);
         return Error::success;
@@ -442,7 +462,16 @@ void FakeHiprt::check_options(const hiprt::BuildOptions& options) {
     if (options.batch_max_primitives != 0) fault("the batch builder costs a compilation");
 }
 
+void FakeHiprt::check_boxes(const hiprt::GeometryBuildInput& input) {
+    const hiprt::AabbList& list = input.list;
+    if (list.box_count == 0) fault("a list of boxes is empty");
+    if (list.box_stride != 24 && list.box_stride != 32) fault("boxes have a wrong stride");
+    if (input.geometry_type != kernels::geometry_type::kMoving) fault("boxes have no intersection function");
+    runtime_.expect_device({number_of(list.boxes), std::size_t{list.box_count} * list.box_stride}, "boxes");
+}
+
 void FakeHiprt::check_mesh(const hiprt::GeometryBuildInput& input, const hiprt::BuildOptions& options) {
+    if (input.type == hiprt::PrimitiveType::aabb_list) return check_boxes(input);
     const hiprt::TriangleMesh& mesh = input.mesh;
     if (input.type != hiprt::PrimitiveType::triangle_mesh) fault("a mesh is not of triangles");
     if (mesh.triangle_count == 0 || mesh.vertex_count == 0) fault("a mesh is empty");
@@ -454,15 +483,31 @@ void FakeHiprt::check_mesh(const hiprt::GeometryBuildInput& input, const hiprt::
     runtime_.expect_device({number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride},
                            "indices");
     if (input.geometry_type != hiprt::kInvalidValue) {
-        if (input.geometry_type != 0) fault("a geometry type beyond the function table");
+        if (input.geometry_type != kernels::geometry_type::kFiltered)
+            fault("a geometry type that is not one of triangles");
         if ((options.flags & hiprt::build_flag::kNoSpatialSplits) == 0)
             fault("spatial splits let a filter see a triangle more than once");
     }
 }
 
+void FakeHiprt::run_box_build(GeometryRecord& record, const hiprt::GeometryBuildInput& input) {
+    for (std::uint32_t i = 0; i < input.list.box_count; ++i) {
+        float p[6];
+        const std::byte* box = static_cast<const std::byte*>(input.list.boxes) + std::size_t{i} * input.list.box_stride;
+        std::memcpy(p, box, 12);
+        std::memcpy(p + 3, box + input.list.box_stride / 2, 12);
+        if (!all_finite(p, 6)) return fault("a box is not finite");
+        for (int c = 0; c < 3; ++c)
+            if (p[c] > p[c + 3]) return fault("a box is inside out");
+    }
+    record.built = true;
+    record.input = input;
+}
+
 void FakeHiprt::run_geometry_build(hiprt::Geometry handle, const hiprt::GeometryBuildInput& input,
                                    hiprt::BuildOperation operation) {
     GeometryRecord& record = geometries.at(handle);
+    if (input.type == hiprt::PrimitiveType::aabb_list) return run_box_build(record, input);
     const hiprt::TriangleMesh& mesh = input.mesh;
     const std::vector<std::uint32_t> indices = read<std::uint32_t>(mesh.indices, std::size_t{3} * mesh.triangle_count);
     for (const std::uint32_t index : indices)

@@ -43,7 +43,7 @@ public:
     };
     struct ModuleRecord {
         std::string source;
-        std::vector<std::string> options;
+        std::vector<std::string> options, functions;  ///< functions: intersect, filter of each geometry type
     };
     std::map<hiprt::Geometry, GeometryRecord> geometries;
     std::map<hiprt::Scene, SceneRecord> scenes;
@@ -69,7 +69,9 @@ private:
     };
     void fault(const std::string& text) { runtime_.fault("hiprt: " + text); }
     void check_options(const hiprt::BuildOptions& options);
+    void check_boxes(const hiprt::GeometryBuildInput& input);
     void check_mesh(const hiprt::GeometryBuildInput& input, const hiprt::BuildOptions& options);
+    void run_box_build(GeometryRecord& record, const hiprt::GeometryBuildInput& input);
     void run_geometry_build(hiprt::Geometry geometry, const hiprt::GeometryBuildInput& input,
                             hiprt::BuildOperation operation);
     void run_scene_build(hiprt::Scene scene, const hiprt::SceneBuildInput& input);

@@ -155,6 +155,8 @@ TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
     ASSERT_EQ(compiler.fake.modules.size(), 2u);
     const test::FakeHiprt::ModuleRecord& module = compiler.fake.modules.at(kernels.source_of(need).module);
     EXPECT_EQ(module.source, "#define KADR_REQUIREMENTS 6u\n#include \"kernels/gpu/path_entry.h\"\n");
+    EXPECT_THAT(module.functions,
+                ::testing::ElementsAre("", "kadr_alpha_filter", "kadr_moving_triangle", "kadr_alpha_filter"));
     EXPECT_THAT(module.options,
                 ::testing::ElementsAre(std::string("-I") + KADR_SOURCE_DIR, "--fmad=false", "--ftz=true"));
     EXPECT_THAT(compiler.runtime.faults, ::testing::IsEmpty());

@@ -2,9 +2,6 @@
 
 #include <set>
 
-#include <fmt/format.h>
-
-#include "base/error.h"
 #include "device/hiprt/rigid_meshes.h"
 
 namespace kadr {
@@ -14,11 +11,6 @@ namespace {
 /// a GPU pay no GPU has shown yet.
 constexpr double kMostGrowth = 1.05;
 
-void refuse_blur(const GeometryData& geometry) {
-    throw InputError(fmt::format("--device hiprt: the mesh {} bends while the shutter is open", geometry.name),
-                     "on GPUs bending meshes are not blurred yet; use --device cpu, or a shutter of 0 deg");
-}
-
 }  // namespace
 
 const BendingMeshes::Entry& BendingMeshes::find(const SceneSnapshot& snapshot, int deformed) const {
@@ -27,11 +19,12 @@ const BendingMeshes::Entry& BendingMeshes::find(const SceneSnapshot& snapshot, i
 
 void BendingMeshes::set_frame(const SceneSnapshot& snapshot, const std::vector<bool>& filtered) {
     built_ = updated_ = kept_ = 0;
+    blurs_ = false;
     for (std::size_t i = 0; i < snapshot.deformed.size(); ++i) {
         const std::shared_ptr<const DeformedMesh>& mesh = snapshot.deformed[i];
         const GeometryData& source = scene_.geometries[mesh->geometry];
         if (source.indices.empty()) continue;
-        if (mesh->key_count > 1) refuse_blur(source);
+        blurs_ = blurs_ || mesh->key_count > 1;
         check_mesh_size(source);
         update(entries_[mesh->number], mesh, filtered[i]);
     }
@@ -45,19 +38,23 @@ void BendingMeshes::forget(const SceneSnapshot& snapshot) {
 
 void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, bool filtered) {
     const std::vector<std::uint32_t>& indices = scene_.geometries[mesh->geometry].indices;
-    const bool same_kind = entry.mesh && entry.filtered == filtered;
+    const bool same_kind = entry.mesh && entry.filtered == filtered && entry.mesh->key_count == mesh->key_count;
     if (same_kind && entry.mesh->version == mesh->version) {
         ++kept_;
         return;
     }
     entry.mesh.reset();  // if anything fails below, the entry is made anew
-    const bool refit = same_kind && entry.bounds.cost(mesh->vertices, indices) <= kMostGrowth * entry.cost_when_built;
+    const bool still = mesh->key_count == 1;
+    const bool refit =
+        same_kind && still && entry.bounds.cost(mesh->vertices, indices) <= kMostGrowth * entry.cost_when_built;
     copy_vertices(entry, *mesh);
     const StructureJob job{entry.data.build_input(host_of(*mesh), filtered), &entry.structure};
-    if (refit) {
-        builder_.update(job, build_options(StructureQuality::fast, filtered));
-    } else {
-        builder_.build({&job, 1}, build_options(StructureQuality::fast, filtered));
+    const hiprt::BuildOptions options = build_options(StructureQuality::fast, filtered || !still);
+    if (refit)
+        builder_.update(job, options);
+    else
+        builder_.build({&job, 1}, options);
+    if (!refit && still) {
         entry.bounds.order(mesh->vertices, indices);
         entry.cost_when_built = entry.bounds.cost(mesh->vertices, indices);
     }
@@ -68,10 +65,12 @@ void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMes
 
 /// The triangles and what else keeps its shape stay where they are.
 void BendingMeshes::copy_vertices(Entry& entry, const DeformedMesh& mesh) {
-    if (entry.data.vertices.count() != mesh.vertices.size()) {
+    const bool was_boxes = entry.data.boxes.count() > 0;
+    if (entry.data.vertices.count() != mesh.vertices.size() || was_boxes != (mesh.key_count > 1)) {
         entry.data = GpuMesh(builder_.memory(), uploads_, host_of(mesh));
         return;
     }
+    if (was_boxes) uploads_.add(entry.data.boxes, boxes_of(host_of(mesh)));
     uploads_.add(entry.data.vertices, mesh.vertices);
     if (entry.data.tangents.count() == mesh.tangents.size()) uploads_.add(entry.data.tangents, mesh.tangents);
 }
@@ -96,7 +95,7 @@ kernels::Geometry BendingMeshes::host_of(const DeformedMesh& mesh) const {
     kernels::Geometry g{};
     g.vertices = mesh.vertices.data();
     g.vertex_count = static_cast<unsigned>(source.positions.size());
-    g.key_count = 1;
+    g.key_count = mesh.key_count;
     g.indices = source.indices.data();
     g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
     if (!mesh.tangents.empty()) g.tangents = mesh.tangents.data();

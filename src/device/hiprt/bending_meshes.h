@@ -15,14 +15,15 @@
 namespace kadr {
 
 /// Meshes that bend from frame to frame: their vertices are copied anew, and their structures, built fast, get new
-/// bounds, or are built anew once the old tree has become too bad.
+/// bounds, or are built anew once the old tree has become too bad. Those that bend while the shutter is open are boxes
+/// to HIPRT, built anew for every frame.
 class BendingMeshes {
 public:
     BendingMeshes(const Scene& scene, StructureBuilder& builder, UploadQueue& uploads)
         : scene_(scene), builder_(builder), uploads_(uploads) {}
 
     /// Brings what is shown up to date. @param filtered  [deformed mesh of the snapshot] rays ask our filter function
-    /// @throws InputError  for a mesh that bends while the shutter is open, with its name
+    /// @throws InputError  for a mesh that is too large, with its name
     void set_frame(const SceneSnapshot& snapshot, const std::vector<bool>& filtered);
     /// Drops the structures of meshes that are shown no more. Nothing may show them.
     void forget(const SceneSnapshot& snapshot);
@@ -37,6 +38,7 @@ public:
     std::uint64_t built() const { return built_; }
     std::uint64_t updated() const { return updated_; }
     std::uint64_t kept() const { return kept_; }
+    bool blurs() const { return blurs_; }  ///< whether some mesh bends while the shutter is open
 
 private:
     struct Entry {
@@ -57,6 +59,7 @@ private:
     UploadQueue& uploads_;
     std::map<std::uint32_t, Entry> entries_;  ///< by number of the mesh
     std::uint64_t built_ = 0, updated_ = 0, kept_ = 0;
+    bool blurs_ = false;
 };
 
 }  // namespace kadr

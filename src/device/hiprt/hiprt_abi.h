@@ -85,6 +85,12 @@ struct TriangleMesh {
     std::uint32_t pair_count = 0;
 };
 
+/// Boxes of custom primitives, met by an intersection function.
+struct AabbList {
+    DevicePointer boxes;  ///< two corners of three floats each, half a stride apart
+    std::uint32_t box_count, box_stride;
+};
+
 /// A tree to import; unused.
 struct NodeList {
     DevicePointer internal_nodes = nullptr, leaf_nodes = nullptr;
@@ -94,7 +100,10 @@ struct NodeList {
 struct alignas(64) GeometryBuildInput {
     PrimitiveType type = PrimitiveType::triangle_mesh;
     std::uint32_t geometry_type = kInvalidValue;  ///< row of the function table; invalid: no function is asked
-    TriangleMesh mesh;                            ///< in HIPRT a union with a list of boxes, which we do not use
+    union {
+        TriangleMesh mesh{};
+        AabbList list;
+    };
     NodeList nodes;
 };
 
@@ -129,9 +138,11 @@ static_assert(sizeof(TriangleMesh) == 48 && offsetof(TriangleMesh, vertex_count)
               offsetof(TriangleMesh, vertex_stride) == 12 && offsetof(TriangleMesh, indices) == 16 &&
               offsetof(TriangleMesh, triangle_count) == 24 && offsetof(TriangleMesh, triangle_stride) == 28 &&
               offsetof(TriangleMesh, pair_indices) == 32 && offsetof(TriangleMesh, pair_count) == 40);
+static_assert(sizeof(AabbList) == 16 && offsetof(AabbList, box_count) == 8 && offsetof(AabbList, box_stride) == 12);
 static_assert(sizeof(NodeList) == 24);
 static_assert(sizeof(GeometryBuildInput) == 128 && offsetof(GeometryBuildInput, geometry_type) == 4 &&
-              offsetof(GeometryBuildInput, mesh) == 8 && offsetof(GeometryBuildInput, nodes) == 56);
+              offsetof(GeometryBuildInput, mesh) == 8 && offsetof(GeometryBuildInput, list) == 8 &&
+              offsetof(GeometryBuildInput, nodes) == 56);
 static_assert(sizeof(Instance) == 16 && offsetof(Instance, geometry) == 8);
 static_assert(sizeof(SceneBuildInput) == 80 && offsetof(SceneBuildInput, headers) == 8 &&
               offsetof(SceneBuildInput, frames) == 16 && offsetof(SceneBuildInput, masks) == 24 &&

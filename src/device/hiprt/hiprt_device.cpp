@@ -12,7 +12,7 @@
 #include "device/hiprt/hiprt_scene.h"
 #include "device/hiprt/launch_queue.h"
 #include "device/hiprt/trace_kernels.h"
-#include "kernels/camera/filter.h"
+#include "kernels/camera/filter_table.h"
 #include "kernels/sampler/sobol.h"
 
 namespace kadr {
@@ -85,7 +85,7 @@ public:
         const auto begin = std::chrono::steady_clock::now();
         current(*runtime_);
         const hiprt::Function function =
-            kernels_.get({scene_->view().settings.integrator, scene_->requirements(), scene_->filters()});
+            kernels_.get({scene_->view().settings.integrator, scene_->requirements(), scene_->asks_functions()});
         const kernels::LaunchParams params = params_of(pass, film);
         int done = 0;
         while (done < film.height()) {
@@ -133,7 +133,7 @@ private:
         kernels::LaunchParams params{};
         params.scene = scene_->view();
         params.top = scene_->top();
-        params.functions = scene_->filters() ? functions_.handle() : nullptr;
+        params.functions = scene_->asks_functions() ? functions_.handle() : nullptr;
         params.instance_of = scene_->instance_of();
         params.filter = filter_table_.data();
         params.shutter = shutter_table_.data();

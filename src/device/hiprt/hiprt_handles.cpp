@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "device/hiprt/hiprt_error.h"
+#include "kernels/gpu/launch_params.h"
 
 namespace kadr {
 namespace {
@@ -99,8 +100,11 @@ HiprtTopLevel::~HiprtTopLevel() {
 
 HiprtFunctionTable::HiprtFunctionTable(HiprtContext& context) : context_(context) {
     const hiprt::Api& api = context.api();
-    check(api.create_function_table(context.handle(), 1, 1, handle_), "make HIPRT's function table");
-    const hiprt::Error set = api.set_function_table(context.handle(), handle_, 0, 0, {});
+    constexpr unsigned kTypes = kernels::geometry_type::kCount;
+    check(api.create_function_table(context.handle(), kTypes, 1, handle_), "make HIPRT's function table");
+    hiprt::Error set = hiprt::Error::success;
+    for (unsigned type = 0; type < kTypes && set == hiprt::Error::success; ++type)
+        set = api.set_function_table(context.handle(), handle_, type, 0, {});
     if (set == hiprt::Error::success) return;
     report_error(api.destroy_function_table(context.handle(), handle_), "free HIPRT's function table");
     check(set, "fill HIPRT's function table");

@@ -77,7 +77,7 @@ private:
     std::size_t bytes_ = 0;
 };
 
-/// The table that leads rays to our filter function.
+/// The table that leads rays to our functions: one row for each kernels::geometry_type, one type of rays.
 class HiprtFunctionTable {
 public:
     explicit HiprtFunctionTable(HiprtContext& context);

@@ -84,8 +84,9 @@ void HiprtScene::require_meshes(const SceneSnapshot& snapshot) {
             uses.insert({instance.geometry, filtered_mesh_[instance.geometry]});
     rigid_.require(uses);
     bending_.set_frame(snapshot, filtered_bend_);
-    filters_ = std::any_of(uses.begin(), uses.end(), [](const MeshUse& use) { return use.second; }) ||
-               std::find(filtered_bend_.begin(), filtered_bend_.end(), true) != filtered_bend_.end();
+    asks_functions_ = std::any_of(uses.begin(), uses.end(), [](const MeshUse& use) { return use.second; }) ||
+                      std::find(filtered_bend_.begin(), filtered_bend_.end(), true) != filtered_bend_.end() ||
+                      bending_.blurs();
 }
 
 void HiprtScene::build_geometry(const SceneSnapshot& snapshot) {
@@ -230,6 +231,7 @@ void HiprtScene::set_requirements() {
     requirements_ = 0;
     if (materials_.shows_maps()) requirements_ |= kernels::requirement::kMaps;
     if (!tables_.shown.empty()) requirements_ |= kernels::requirement::kTransforms;
+    if (bending_.blurs()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;
     if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map)
         requirements_ |= kernels::requirement::kEmitters;

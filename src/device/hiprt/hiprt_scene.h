@@ -38,7 +38,7 @@ public:
     hiprt::Scene top() const { return top_.handle(); }        ///< null: nothing to see
     const unsigned* instance_of() const { return instance_of_.data(); }
     unsigned requirements() const { return requirements_; }
-    bool filters() const { return filters_; }  ///< whether rays ask our filter function anywhere
+    bool asks_functions() const { return asks_functions_; }  ///< whether rays ask our functions about some geometry
     std::uint64_t instance_count() const { return tables_.shown.size(); }
     std::uint64_t moving_count() const { return tables_.moving; }
     const StructureCounts& structures() const { return structures_; }
@@ -105,7 +105,7 @@ private:
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0;
     glm::dvec3 origin_{0};
-    bool cull_backfaces_ = false, filters_ = false;
+    bool cull_backfaces_ = false, asks_functions_ = false;
     unsigned requirements_ = 0;
     StructureCounts structures_;
 };

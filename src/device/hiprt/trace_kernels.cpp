@@ -41,7 +41,8 @@ KernelSource TraceKernels::source_of(const KernelNeed& need) {
     const kernels::EntryPoint entry = kernels::entry_point(need.integrator);
     KernelSource source;
     source.function = entry.name;
-    source.text = fmt::format("#define KADR_REQUIREMENTS {}u\n#include \"{}\"\n", need.requirements, entry.header);
+    source.text = fmt::format("#define KADR_REQUIREMENTS {}u\n#include \"{}\"\n",
+                              kernels::kernel_requirements(need.integrator, need.requirements), entry.header);
     source.options = {"-I" + folder_.string()};  // HIPRT itself asks for C++17
     if (context_.runtime().properties().vendor == GpuVendor::amd)
         source.options.insert(source.options.end(), std::begin(kernels::kHipOptions), std::end(kernels::kHipOptions));
@@ -53,7 +54,7 @@ KernelSource TraceKernels::source_of(const KernelNeed& need) {
     for (const std::string& option : source.options) hasher.add(option);
     hasher.add(static_cast<std::int64_t>(hiprt::kApiVersion));
     source.module =
-        fmt::format("{}_{}{}_{}", entry.name, need.requirements, need.filters ? "f" : "", hasher.finish().hex());
+        fmt::format("{}_{}{}_{}", entry.name, need.requirements, need.functions ? "f" : "", hasher.finish().hex());
     return source;
 }
 
@@ -63,13 +64,16 @@ hiprt::Function TraceKernels::get(const KernelNeed& need) {
     const KernelSource source = source_of(need);
     const char* function_name = source.function.c_str();
     std::vector<const char*> options = pointers_to(source.options);
-    hiprt::FunctionNames names{nullptr, kernels::kFilterFunction};
-    const std::uint32_t types = need.filters ? 1 : 0;
+    hiprt::FunctionNames names[kernels::geometry_type::kCount];
+    for (unsigned i = 0; i < kernels::geometry_type::kCount; ++i)
+        names[i] = {kernels::kGeometryFunctions[i].intersect, kernels::kGeometryFunctions[i].filter};
+    const std::uint32_t geometry_types = need.functions ? kernels::geometry_type::kCount : 0;
+    const std::uint32_t ray_types = need.functions ? 1 : 0;
     hiprt::Function function = nullptr;
     check(context_.api().build_trace_kernels(context_.handle(), 1, &function_name, source.text.c_str(),
                                              source.module.c_str(), 0, nullptr, nullptr,
-                                             static_cast<std::uint32_t>(options.size()), options.data(), types, types,
-                                             need.filters ? &names : nullptr, &function, nullptr, true),
+                                             static_cast<std::uint32_t>(options.size()), options.data(), geometry_types,
+                                             ray_types, need.functions ? names : nullptr, &function, nullptr, true),
           fmt::format("compile the kernel {} for requirement set {} (what HIPRT printed above says why)",
                       source.function, need.requirements));
     compiled_[need] = function;

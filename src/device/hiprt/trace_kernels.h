@@ -14,7 +14,7 @@ namespace kadr {
 struct KernelNeed {
     kernels::IntegratorKind integrator = kernels::IntegratorKind::path;
     unsigned requirements = 0;  ///< set of kernels::requirement bits: exactly these are compiled
-    bool filters = false;       ///< rays ask our filter function at hits on some geometry
+    bool functions = false;     ///< rays ask our functions about some geometry
     auto operator<=>(const KernelNeed&) const = default;
 };
 

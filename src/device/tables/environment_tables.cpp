@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernels/light/environment_tables.h"
+
 namespace kadr {
 
 EnvironmentTables::EnvironmentTables(const Image& image) : width_(image.width), height_(image.height) {
