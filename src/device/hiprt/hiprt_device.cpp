@@ -69,6 +69,9 @@ public:
         current(*runtime_);
         with_memory("the frame", [&] { scene_->set_frame(snapshot); });
         stream_.synchronize("build the structures of the frame on the GPU");
+        // Here and not when it renders: compiling takes long the first time, and is no part of what samples cost.
+        function_ =
+            kernels_.get({scene_->view().settings.integrator, scene_->requirements(), scene_->asks_functions()});
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
         kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
@@ -84,13 +87,11 @@ public:
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
         current(*runtime_);
-        const hiprt::Function function =
-            kernels_.get({scene_->view().settings.integrator, scene_->requirements(), scene_->asks_functions()});
         const kernels::LaunchParams params = params_of(pass, film);
         int done = 0;
         while (done < film.height()) {
             const int end = begin_rows(film, done);
-            if (!render_rows(function, params, pass, film, done, end)) break;
+            if (!render_rows(params, pass, film, done, end)) break;
             done = end;
         }
         add_counters();
@@ -161,14 +162,13 @@ private:
     }
 
     /// @return whether they were rendered to their end
-    bool render_rows(hiprt::Function function, kernels::LaunchParams params, const Pass& pass, Film& film, int first,
-                     int end) {
+    bool render_rows(kernels::LaunchParams params, const Pass& pass, Film& film, int first, int end) {
         params.film = film_.view();
         const LaunchPiece rows{0, first, film.width(), end, pass.first_sample, pass.sample_count};
         const auto progress = [&](double done) {
             if (pass.progress) pass.progress((first + done * (end - first)) / film.height());
         };
-        if (!launches_.run(function, params, rows, pass.cancel, progress)) return false;
+        if (!launches_.run(function_, params, rows, pass.cancel, progress)) return false;
         film_.add_to(film, pass.half);
         return true;
     }
@@ -207,7 +207,8 @@ private:
     LaunchQueue launches_;
     std::unique_ptr<HiprtScene> scene_;
 
-    int most_rows_ = 1 << 30;  ///< of the film that are on the GPU at a time; learned when memory runs out
+    int most_rows_ = 1 << 30;             ///< of the film that are on the GPU at a time; learned when memory runs out
+    hiprt::Function function_ = nullptr;  ///< of the frame at hand
     kernels::FilterTable filter_{};
     kernels::Shutter shutter_;  ///< of the part at hand
     double part_weight_ = 1;
