@@ -245,6 +245,13 @@ TEST(HiprtDevice, WhatDoesNotChangeIsKept) {
         EXPECT_EQ(gpu.runtime->count("create_geometries"), geometries);
         EXPECT_EQ(device->statistics().structures, (StructureCounts{1, 0, 2}));
         EXPECT_EQ(gpu.hiprt.scenes.size(), 1u);
+        s.snapshot.render_origin = {1024, 0, 0};
+        device->set_frame(s.snapshot);
+        EXPECT_EQ(gpu.runtime->count("build_scene"), 3u);
+        s.snapshot.settings.cull_backfaces = true;  // now rays ask at every hit on a single-sided surface
+        device->set_frame(s.snapshot);
+        EXPECT_EQ(gpu.runtime->count("build_scene"), 4u);
+        EXPECT_EQ(gpu.hiprt.geometries.size(), 3u);
     }
     EXPECT_EQ(gpu.complaints(), "");
 }
