@@ -111,31 +111,52 @@ def unpack(wheel, inside, folder):
         shutil.rmtree(partial)
 
 
-class Nvrtc:
-    """NVIDIA's run-time compiler: the one that HIPRT compiles with."""
+class RuntimeCompiler:
+    """A run-time compiler: NVRTC, or hiprtc, whose interface is the same but for the prefix of its names."""
 
-    def __init__(self):
-        path = nvrtc_library()
+    def __init__(self, library, prefix):
         try:
-            self.library = ctypes.CDLL(path)
+            self.library, self.prefix = ctypes.CDLL(library), prefix
         except OSError as error:
-            raise Missing(f"NVRTC cannot be opened: {error}")
-        major, minor = ctypes.c_int(), ctypes.c_int()
-        self.library.nvrtcVersion(ctypes.byref(major), ctypes.byref(minor))
-        self.name = f"nvrtc {major.value}.{minor.value}"
+            raise Missing(f"{prefix} cannot be opened: {error}")
+
+    def call(self, name, *arguments):
+        return getattr(self.library, self.prefix + name)(*arguments)
 
     def compile(self, source, options):
         """@return (whether it compiled, the log)"""
         program = ctypes.c_void_p()
-        self.library.nvrtcCreateProgram(ctypes.byref(program), source.encode(), b"kernel.cu", 0, None, None)
+        self.call("CreateProgram", ctypes.byref(program), source.encode(), b"kernel.cu", 0, None, None)
         arguments = (ctypes.c_char_p * len(options))(*[option.encode() for option in options])
-        status = self.library.nvrtcCompileProgram(program, len(options), arguments)
+        status = self.call("CompileProgram", program, len(options), arguments)
         size = ctypes.c_size_t()
-        self.library.nvrtcGetProgramLogSize(program, ctypes.byref(size))
-        log = ctypes.create_string_buffer(size.value)
-        self.library.nvrtcGetProgramLog(program, log)
-        self.library.nvrtcDestroyProgram(ctypes.byref(program))
+        self.call("GetProgramLogSize", program, ctypes.byref(size))
+        log = ctypes.create_string_buffer(size.value + 1)
+        self.call("GetProgramLog", program, log)
+        self.call("DestroyProgram", ctypes.byref(program))
         return status == 0, log.value.decode(errors="replace")
+
+
+class Nvrtc(RuntimeCompiler):
+    """The one that HIPRT compiles with on NVIDIA's GPUs."""
+
+    def __init__(self):
+        super().__init__(nvrtc_library(), "nvrtc")
+        major, minor = ctypes.c_int(), ctypes.c_int()
+        self.library.nvrtcVersion(ctypes.byref(major), ctypes.byref(minor))
+        self.name = f"nvrtc {major.value}.{minor.value}"
+
+
+class Hiprtc(RuntimeCompiler):
+    """The one that HIPRT compiles with on AMD's GPUs; part of the HIP runtime."""
+
+    name = "hiprtc"
+
+    def __init__(self):
+        found = sorted(glob.glob("/usr/lib/*/libamdhip64.so*") + glob.glob("/opt/rocm*/lib/libamdhip64.so*"))
+        if not found:
+            raise Missing("libamdhip64 is not installed (Debian: libamdhip64-5)")
+        super().__init__(found[0], "hiprtc")
 
 
 def nvrtc_library():

@@ -5,6 +5,10 @@
 #error "KADR_REQUIREMENTS is not defined; expected the set of requirement:: bits that the kernel is compiled for"
 #endif
 
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 700
+#error "compiled for an NVIDIA architecture before 7.0, which has no __grid_constant__; pass kCudaOptions"
+#endif
+
 #include <hiprt/hiprt_device.h>
 
 #include "kernels/gpu/hiprt_tracer.h"

@@ -40,8 +40,9 @@ inline constexpr GeometryFunctions kGeometryFunctions[geometry_type::kCount] = {
 };
 
 /// What both run-time compilers are told beside C++17 and the include folders: the processor's arithmetic is neither
-/// fused nor does it keep denormals.
-inline constexpr const char* kCudaOptions[] = {"--fmad=false", "--ftz=true"};
+/// fused nor does it keep denormals. HIPRT names no architecture: hiprtc takes that of the GPU, NVRTC one that is too
+/// old for us (5.2, before version 13); what is compiled for 7.5 runs on every later one.
+inline constexpr const char* kCudaOptions[] = {"--gpu-architecture=compute_75", "--fmad=false", "--ftz=true"};
 inline constexpr const char* kHipOptions[] = {"-ffp-contract=off", "-fgpu-flush-denormals-to-zero"};
 
 }  // namespace kadr::kernels

@@ -1,5 +1,5 @@
-// Rays through HIPRT, and the decision of its filter function. Only a GPU's compiler reads this file, after HIPRT's
-// device headers.
+// Rays through HIPRT, and the functions that it asks about hits. Read after HIPRT's device headers, by a GPU's
+// compiler; tests build it for the host, over a stand-in for that interface.
 #pragma once
 
 #include "kernels/gpu/launch_params.h"
@@ -7,10 +7,16 @@
 #include "kernels/integrator/coverage.h"
 #include "kernels/integrator/path.h"
 
+#if KADR_DEVICE_CODE
+#define DEVICE_FN __device__
+#else
+#define DEVICE_FN
+#endif
+
 namespace kadr::kernels {
 
 /// HIPRT's box test misses both neighbours of a face that a ray runs along exactly; a hair beside it, it does not.
-__device__ inline float off_axis(float d) { return d == 0.0f ? copy_sign(1e-20f, d) : d; }
+DEVICE_FN inline float off_axis(float d) { return d == 0.0f ? copy_sign(1e-20f, d) : d; }
 
 /// What the functions that a ray asks get to see.
 struct RayPayload {
@@ -23,10 +29,10 @@ struct RayPayload {
 /// overflow. Normals are never HIPRT's: a hit's is in object space, and its transforms are wrong under shear.
 class HiprtTracer {
 public:
-    __device__ HiprtTracer(const LaunchParams& params, bool keep_blend, LaunchCounters& counters)
+    DEVICE_FN HiprtTracer(const LaunchParams& params, bool keep_blend, LaunchCounters& counters)
         : params_(params), counters_(counters), keep_blend_(keep_blend) {}
 
-    __device__ bool closest(const PathState<float>& path, Hit<float>& hit) {
+    DEVICE_FN bool closest(const PathState<float>& path, Hit<float>& hit) {
         if (!params_.top) return true;
         RayPayload payload{&params_, path.time, {}};
         payload.coverage.key = coverage_key(path.sampler_key, path.sample, path.bounces);
@@ -47,7 +53,7 @@ public:
         return true;
     }
 
-    __device__ bool shadow(const ShadowRay<float>& ray, float time, float& transmittance) {
+    DEVICE_FN bool shadow(const ShadowRay<float>& ray, float time, float& transmittance) {
         if (!params_.top) return true;
         RayPayload payload{&params_, time, {}};
         payload.coverage.shadow = true;
@@ -62,12 +68,12 @@ public:
     }
 
 private:
-    __device__ hiprtScene top() const { return static_cast<hiprtScene>(const_cast<void*>(params_.top)); }
-    __device__ hiprtFuncTable functions() const {
+    DEVICE_FN hiprtScene top() const { return static_cast<hiprtScene>(const_cast<void*>(params_.top)); }
+    DEVICE_FN hiprtFuncTable functions() const {
         return static_cast<hiprtFuncTable>(const_cast<void*>(params_.functions));
     }
 
-    __device__ static hiprtRay ray_of(Vec3f origin, Vec3f direction, float distance) {
+    DEVICE_FN static hiprtRay ray_of(Vec3f origin, Vec3f direction, float distance) {
         hiprtRay ray;
         ray.origin = {origin.x, origin.y, origin.z};
         ray.direction = {off_axis(direction.x), off_axis(direction.y), off_axis(direction.z)};
@@ -76,7 +82,7 @@ private:
         return ray;
     }
 
-    __device__ bool overflowed(hiprtTraversalState state) {
+    DEVICE_FN bool overflowed(hiprtTraversalState state) {
         if (state != hiprtTraversalStateStackOverflow) return false;
         ++counters_.stack_overflows;
         return true;
@@ -87,12 +93,12 @@ private:
     bool keep_blend_;
 };
 
-__device__ inline const Instance& instance_of(const RayPayload& payload, const hiprtHit& hit) {
+DEVICE_FN inline const Instance& instance_of(const RayPayload& payload, const hiprtHit& hit) {
     return payload.params->scene.instances[payload.params->instance_of[hit.instanceID]];
 }
 
 /// Whether a ray passes a hit: HIPRT's filter function. The ray is in the mesh's space, as the hit's normal is.
-__device__ inline bool passes(const hiprtRay& ray, RayPayload& payload, const hiprtHit& hit) {
+DEVICE_FN inline bool passes(const hiprtRay& ray, RayPayload& payload, const hiprtHit& hit) {
     const SceneView& scene = payload.params->scene;
     const Instance& instance = instance_of(payload, hit);
     Vec3f p[3];
@@ -103,7 +109,7 @@ __device__ inline bool passes(const hiprtRay& ray, RayPayload& payload, const hi
 }
 
 /// Whether a ray meets a moving triangle: HIPRT's intersection function.
-__device__ inline bool meets_moving(const hiprtRay& ray, const RayPayload& payload, hiprtHit& hit) {
+DEVICE_FN inline bool meets_moving(const hiprtRay& ray, const RayPayload& payload, hiprtHit& hit) {
     Vec3f p[3];
     corners_at(payload.params->scene.geometries[instance_of(payload, hit).geometry], hit.primID, payload.time, p);
     TriangleHit found;

@@ -72,6 +72,10 @@ class Sources(unittest.TestCase):
         self.assertIn("--fmad=false", options["Cuda"])
         self.assertIn("-ffp-contract=off", options["Hip"])
 
+    def test_nvidias_compiler_is_told_an_architecture_that_the_kernels_can_do_with(self):
+        _, options = check.host_constants()
+        self.assertIn("--gpu-architecture=compute_75", options["Cuda"])
+
 
 class Complaints(unittest.TestCase):
     def test_a_little_more_is_no_matter(self):
