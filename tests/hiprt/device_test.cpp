@@ -270,6 +270,25 @@ TEST(HiprtDevice, MayBeUsedAndDestroyedByOtherThreads) {
     EXPECT_EQ(gpu.complaints(), "");
 }
 
+TEST(HiprtDevice, GpusThatAreTooOldAreRefusedByName) {
+    FakeGpu gpu;
+    gpu.runtime->compute = 61;
+    try {
+        gpu.make();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(
+            error.diagnostics()[0].found,
+            "the GPU a recording has compute capability 6.1, and 7.5 is the least that our kernels are compiled for");
+    }
+    gpu.runtime->compute = 75;
+    EXPECT_TRUE(gpu.make());
+    gpu.runtime->vendor = GpuVendor::amd;
+    gpu.runtime->compute = 0;
+    EXPECT_TRUE(gpu.make());
+    EXPECT_EQ(gpu.complaints(), "");
+}
+
 TEST(HiprtDevice, WhatALaunchIsTold) {
     FakeGpu gpu;
     SmallScene s = full_scene();
