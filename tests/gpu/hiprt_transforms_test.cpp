@@ -12,7 +12,7 @@
 #include <random>
 #include <type_traits>
 
-#include "device/embree/motion_keys.h"
+#include "device/tables/motion_keys.h"
 #include "kernels/scene/motion.h"
 
 namespace kadr::test {

@@ -24,7 +24,7 @@ struct Bending {
         device = gpu.make();
         device->load(s.scene, nullptr);
     }
-    /// @param reach  how far the third corner is
+    /// @param reach  how far the third corner is, at the last key; also what its tangent says
     void show(std::uint64_t version, float reach, unsigned keys = 1) {
         auto mesh = std::make_shared<DeformedMesh>();
         mesh->geometry = 0;
@@ -34,7 +34,8 @@ struct Bending {
         for (unsigned k = 0; k < keys; ++k)
             for (const kernels::Vec3f& p : s.scene.geometries[0].positions)
                 mesh->vertices.push_back({p, {0, 0, 1}, {0, 0}});
-        mesh->vertices[2].position = {reach, reach, 0};
+        mesh->vertices[4 * (keys - 1) + 2].position = {reach, reach, 0};
+        mesh->tangents.assign(mesh->vertices.size(), {reach, 0, 0, 1});
         s.snapshot.deformed = {mesh};
         ++s.snapshot.geometry_key;
         device->set_frame(s.snapshot);
@@ -62,6 +63,7 @@ TEST(BendingOnGpu, OneStructureForAllCopiesUpdatedWhileItIsGood) {
     b.render();
     const kernels::SceneView& view = b.gpu.launches.back().scene;
     EXPECT_EQ(view.geometries[view.instances[1].geometry].vertices[2].position.x, 1.0001f);
+    EXPECT_EQ(view.geometries[view.instances[1].geometry].tangents[3].x, 1.0001f);
     b.show(2, 1.0001f);
     EXPECT_EQ(b.counts(), (StructureCounts{1, 0, 1}));
     b.show(3, 300);
@@ -124,7 +126,7 @@ TEST(BendingOnGpu, AFrameThatFailedLeavesNoVerticesBehind) {
 TEST(BendingOnGpu, BlurredMeshesAreBoxesAroundAllThatTheirTrianglesPass) {
     Bending b;
     b.show(1, 1);
-    b.show(2, 5, 3);  // the third corner begins at 5, 5 and ends at 1, 1
+    b.show(2, 5, 3);  // the third corner begins at 1, 1 and ends at 5, 5
     b.render();
     ASSERT_EQ(b.gpu.hiprt.geometries.size(), 1u);
     const FakeHiprt::GeometryRecord& record = b.gpu.hiprt.geometries.begin()->second;
@@ -142,8 +144,8 @@ TEST(BendingOnGpu, BlurredMeshesAreBoxesAroundAllThatTheirTrianglesPass) {
     EXPECT_NE(launch.functions, nullptr);
     const kernels::Geometry& geometry = launch.scene.geometries[launch.scene.instances[0].geometry];
     EXPECT_EQ(geometry.key_count, 3u);
-    EXPECT_EQ(geometry.vertices[2].position.x, 5.0f);
-    EXPECT_EQ(geometry.vertices[2 * 4 + 2].position.x, 1.0f);
+    EXPECT_EQ(geometry.vertices[2].position.x, 1.0f);
+    EXPECT_EQ(geometry.vertices[2 * 4 + 2].position.x, 5.0f);
     EXPECT_THAT(b.gpu.hiprt.modules.begin()->second.source, ::testing::HasSubstr("KADR_REQUIREMENTS 10u"));
     // New boxes every frame, in the same place.
     b.show(3, 7, 3);

@@ -122,9 +122,20 @@ private:
             corners(input, i, t, time, p);
             kernels::TriangleHit hit;
             if (!kernels::intersect_triangle(to_float(o), to_float(d), p, 0, max_distance(), hit)) continue;
+            if (boxes && !in_box(input.list, t, o + d * static_cast<double>(hit.distance))) continue;
             if (input.geometry_type != hiprt::kInvalidValue && !stops(i, t, hit, p, to_float(d), coverage)) continue;
             if (found(t, hit)) return;
         }
+    }
+
+    /// Beyond its box nothing would look for a triangle.
+    static bool in_box(const hiprt::AabbList& list, unsigned t, const glm::dvec3& p) {
+        const auto* box = reinterpret_cast<const float*>(static_cast<const std::byte*>(list.boxes) +
+                                                         std::size_t{t} * list.box_stride);
+        const float* high = box + list.box_stride / 8;
+        for (int c = 0; c < 3; ++c)
+            if (p[c] < box[c] || p[c] > high[c]) return false;
+        return true;
     }
 
     bool stops(std::size_t i, unsigned t, const kernels::TriangleHit& hit, const kernels::Vec3f (&p)[3],

@@ -11,6 +11,7 @@
 
 #include "device/small_scene.h"
 #include "fake_gpu.h"
+#include "kernels/sampler/sobol.h"
 
 namespace kadr::test {
 namespace {
@@ -245,6 +246,13 @@ TEST(HiprtDevice, WhatDoesNotChangeIsKept) {
         EXPECT_EQ(gpu.runtime->count("create_geometries"), geometries);
         EXPECT_EQ(device->statistics().structures, (StructureCounts{1, 0, 2}));
         EXPECT_EQ(gpu.hiprt.scenes.size(), 1u);
+        s.snapshot.render_origin = {1024, 0, 0};
+        device->set_frame(s.snapshot);
+        EXPECT_EQ(gpu.runtime->count("build_scene"), 3u);
+        s.snapshot.settings.cull_backfaces = true;  // now rays ask at every hit on a single-sided surface
+        device->set_frame(s.snapshot);
+        EXPECT_EQ(gpu.runtime->count("build_scene"), 4u);
+        EXPECT_EQ(gpu.hiprt.geometries.size(), 3u);
     }
     EXPECT_EQ(gpu.complaints(), "");
 }
@@ -260,6 +268,61 @@ TEST(HiprtDevice, MayBeUsedAndDestroyedByOtherThreads) {
     std::thread([&] { device->render({}, film); }).join();
     std::thread([&] { device.reset(); }).join();
     EXPECT_EQ(gpu.complaints(), "");
+}
+
+TEST(HiprtDevice, GpusThatAreTooOldAreRefusedByName) {
+    FakeGpu gpu;
+    gpu.runtime->compute = 61;
+    try {
+        gpu.make();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(
+            error.diagnostics()[0].found,
+            "the GPU a recording has compute capability 6.1, and 7.5 is the least that our kernels are compiled for");
+    }
+    gpu.runtime->compute = 75;
+    EXPECT_TRUE(gpu.make());
+    gpu.runtime->vendor = GpuVendor::amd;
+    gpu.runtime->compute = 0;
+    EXPECT_TRUE(gpu.make());
+    EXPECT_EQ(gpu.complaints(), "");
+}
+
+TEST(HiprtDevice, WhatALaunchIsTold) {
+    FakeGpu gpu;
+    SmallScene s = full_scene();
+    s.snapshot.settings.max_bounces = s.snapshot.settings.max_glossy = 1000;
+    s.snapshot.settings.seed = 7;
+    s.snapshot.weight = 0.25;
+    const std::unique_ptr<Device> device = gpu.make();
+    Pass pass;
+    pass.half = 1;
+    pass.first_sample = 8;
+    pass.sample_count = 4;
+    pass.dealt_share = 0.5;
+    render(*device, s, pass);
+    const kernels::LaunchParams& launch = gpu.launches.back();
+    EXPECT_EQ(launch.scene.settings.max_bounces, 250);  // paths count theirs in eight bits
+    EXPECT_EQ(launch.scene.settings.max_glossy, 250);
+    EXPECT_EQ(launch.seed, kernels::seed_of_half(7, 1));
+    EXPECT_EQ(launch.shutter->weight, 0.5f);  // a quarter of the light, half of the samples
+    EXPECT_EQ(launch.first_sample, 8);
+    EXPECT_EQ(launch.sample_count, 4);
+    EXPECT_FALSE(launch.centred);
+    // What was counted is of the frame at hand.
+    EXPECT_EQ(device->statistics().pixel_samples, 24u * 20u * 4u);
+    device->set_frame(s.snapshot);
+    EXPECT_EQ(device->statistics().pixel_samples, 0u);
+    s.snapshot.settings.integrator = kernels::IntegratorKind::direct;
+    device->set_frame(s.snapshot);
+    Film film(24, 20, {});
+    film.clear();
+    pass.total_samples = 1;
+    pass.dealt_share = 0;
+    device->render(pass, film);
+    EXPECT_TRUE(gpu.launches.back().centred);
+    EXPECT_EQ(gpu.launches.back().shutter->weight, 1.0f);
 }
 
 TEST(HiprtDevice, NothingToSee) {

@@ -157,8 +157,8 @@ TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
     EXPECT_EQ(module.source, "#define KADR_REQUIREMENTS 6u\n#include \"kernels/gpu/path_entry.h\"\n");
     EXPECT_THAT(module.functions,
                 ::testing::ElementsAre("", "kadr_alpha_filter", "kadr_moving_triangle", "kadr_alpha_filter"));
-    EXPECT_THAT(module.options,
-                ::testing::ElementsAre(std::string("-I") + KADR_SOURCE_DIR, "--fmad=false", "--ftz=true"));
+    EXPECT_THAT(module.options, ::testing::ElementsAre(std::string("-I") + KADR_SOURCE_DIR,
+                                                       "--gpu-architecture=compute_75", "--fmad=false", "--ftz=true"));
     EXPECT_THAT(compiler.runtime.faults, ::testing::IsEmpty());
 }
 

@@ -35,6 +35,7 @@ public:
     GpuResult::Kind failure = GpuResult::Kind::failure;
     std::size_t capacity = std::size_t{1} << 30;  ///< bytes of device memory
     GpuVendor vendor = GpuVendor::nvidia;
+    int compute = 90;
     /// Runs a kernel. `argument`: a copy of the launch's one argument. @return seconds that it took
     std::function<double(const std::string& function, const std::byte* argument)> on_launch;
 
@@ -60,7 +61,7 @@ public:
     GpuFunctionHandle make_function(const std::string& name);
     void expect_current(const std::string& call);
 
-    GpuProperties properties() const override { return {"a recording", "fake_1", vendor, capacity}; }
+    GpuProperties properties() const override { return {"a recording", "fake_1", vendor, capacity, compute}; }
     GpuResult make_current() override;
     GpuResult memory(std::size_t& free_bytes, std::size_t& total_bytes) override;
     void* native_context() const override { return const_cast<RecordingRuntime*>(this); }

@@ -65,14 +65,13 @@ void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMes
 
 /// The triangles and what else keeps its shape stay where they are.
 void BendingMeshes::copy_vertices(Entry& entry, const DeformedMesh& mesh) {
-    const bool was_boxes = entry.data.boxes.count() > 0;
-    if (entry.data.vertices.count() != mesh.vertices.size() || was_boxes != (mesh.key_count > 1)) {
+    if (entry.data.vertices.count() != mesh.vertices.size()) {  // none yet, or another number of keys
         entry.data = GpuMesh(builder_.memory(), uploads_, host_of(mesh));
         return;
     }
-    if (was_boxes) uploads_.add(entry.data.boxes, boxes_of(host_of(mesh)));
     uploads_.add(entry.data.vertices, mesh.vertices);
-    if (entry.data.tangents.count() == mesh.tangents.size()) uploads_.add(entry.data.tangents, mesh.tangents);
+    uploads_.add(entry.data.tangents, mesh.tangents);
+    if (entry.data.boxes.count() > 0) uploads_.add(entry.data.boxes, boxes_of(host_of(mesh)));
 }
 
 void BendingMeshes::set_previous(const SceneSnapshot& snapshot) {

@@ -23,6 +23,7 @@ struct GpuProperties {
     std::string architecture;  ///< "sm_90", "gfx1100"
     GpuVendor vendor = GpuVendor::amd;
     std::size_t total_bytes = 0;
+    int compute = 0;  ///< NVIDIA: compute capability, 75 is 7.5
 };
 
 /// What a call to the GPU came to.

@@ -27,6 +27,15 @@ GpuRuntime& current(GpuRuntime& runtime) {
     return runtime;
 }
 
+/// Kernels are compiled for compute capability 7.5 (kCudaOptions), which runs on every later one.
+void check_architecture(const GpuProperties& gpu) {
+    constexpr int kLeast = 75;
+    if (gpu.vendor != GpuVendor::nvidia || gpu.compute >= kLeast) return;
+    throw InputError(
+        fmt::format("the GPU {} has compute capability {}.{}, and 7.5 is the least that our kernels are compiled for",
+                    gpu.name, gpu.compute / 10, gpu.compute % 10));
+}
+
 class HiprtDevice final : public Device {
 public:
     explicit HiprtDevice(HiprtParts parts)
@@ -217,6 +226,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Device> make_hiprt_device(HiprtParts parts) { return std::make_unique<HiprtDevice>(std::move(parts)); }
+std::unique_ptr<Device> make_hiprt_device(HiprtParts parts) {
+    check_architecture(parts.runtime->properties());
+    return std::make_unique<HiprtDevice>(std::move(parts));
+}
 
 }  // namespace kadr

@@ -18,6 +18,7 @@ struct HiprtParts {
 };
 
 /// A GPU through HIPRT. What it cannot show it refuses by name when it is given the frame.
+/// @throws InputError   for a GPU that is too old for our kernels
 /// @throws RenderError  when the GPU or HIPRT does not start
 std::unique_ptr<Device> make_hiprt_device(HiprtParts parts);
 

@@ -69,6 +69,7 @@ public:
         properties_.vendor = vendor;
         properties_.name = properties.name;
         properties_.total_bytes = properties.totalGlobalMem;
+        if (vendor == GpuVendor::nvidia) properties_.compute = 10 * properties.major + properties.minor;
         properties_.architecture = vendor == GpuVendor::amd
                                        ? std::string(properties.gcnArchName)
                                        : fmt::format("sm_{}{}", properties.major, properties.minor);
