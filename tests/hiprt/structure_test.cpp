@@ -40,7 +40,7 @@ struct Triangle {
     HiprtGeometry build() {
         HiprtGeometry structure;
         const StructureJob job{mesh.build_input(host, false), &structure};
-        builder.build({&job, 1}, build_options(BuildQuality::fast, false));
+        builder.build({&job, 1}, build_options(StructureQuality::fast, false));
         return structure;
     }
 };
@@ -74,7 +74,7 @@ TEST(Structures, OfAllInstancesAreNotFreedWhileTheyAreBuilt) {
     input.frames = frames.pointer();
     input.masks = masks.pointer();
     input.instance_count = input.frame_count = 1;
-    { const HiprtTopLevel level = t.builder.build_top_level(input, build_options(BuildQuality::fast, false)); }
+    { const HiprtTopLevel level = t.builder.build_top_level(input, build_options(StructureQuality::fast, false)); }
     EXPECT_THAT(t.runtime.faults, ::testing::IsEmpty());
     EXPECT_TRUE(t.fake.scenes.empty());
 }

@@ -87,7 +87,7 @@ shots: [])"),
          R"(shot.yaml:4:11: error: unknown key 'colour' in render
     render: { colour: 4 }
               ^~~~~~
-  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, seed, cull_backfaces)"},
+  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
         {std::string(kBase) + R"(image: { size: [1, 2] }
 image: { size: [3, 4] })",
          R"(shot.yaml:5:1: error: duplicate key 'image'
@@ -118,7 +118,7 @@ image: { size: [3, 4] })",
          R"(shot.yaml:4:9: error: render is 5
     render: 5
             ^
-  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, seed, cull_backfaces)"},
+  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
         {std::string(kBase) + R"(render: { samples: { max_error: 2, at_least: 64, at_most: 32 } })",
          R"(shot.yaml:4:33: error: render.samples.max_error is 2
     render: { samples: { max_error: 2, at_least: 64, at_most: 32 } }
@@ -460,12 +460,25 @@ shot.yaml:4:62: error: lights.a.size[0] is 0
     use_scene_lights: yes
                       ^~~
   expected true or false)"},
+        {std::string(kBase) + R"(render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 })",
+         R"(shot.yaml:4:20: error: render.denoise is 'nlm'
+    render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
+                       ^~~
+  expected one of none, oidn
+shot.yaml:4:32: error: render.build is 'best'
+    render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
+                                   ^~~~
+  expected one of low, medium, high
+shot.yaml:4:46: error: render.robust is 1
+    render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
+                                                 ^
+  expected true or false
+shot.yaml:4:64: error: render.texture_limit is 0
+    render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
+                                                                   ^
+  expected 1 to 32768 px or none)"},
         {std::string(kBase) + R"(render: { denoise: oidn, filter: gauss, clamp: { direct: 0 }, seed: -1 })",
-         R"(shot.yaml:4:20: error: render.denoise other than none is not supported yet
-    render: { denoise: oidn, filter: gauss, clamp: { direct: 0 }, seed: -1 }
-                       ^~~~
-  expected none
-shot.yaml:4:34: error: render.filter is 'gauss'
+         R"(shot.yaml:4:34: error: render.filter is 'gauss'
     render: { denoise: oidn, filter: gauss, clamp: { direct: 0 }, seed: -1 }
                                      ^~~~~
   expected one of box, gaussian, mitchell, blackman-harris or a map of type, width
