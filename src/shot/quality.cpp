@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "shot/quality_measured.h"
 
 namespace kadr {
 
@@ -24,6 +27,38 @@ constexpr std::array<QualityBlock, 4> kBlocks{{
     {"reference", "a measure for the others: no clamps, practically no noise", kReference},
 }};
 
+std::string row_of(std::string_view name, const std::array<MeasuredStep, kBlocks.size()>& steps) {
+    std::string text = fmt::format("  {:<12}", name);
+    for (const MeasuredStep& step : steps) text += fmt::format("  {:>9.3g} {:>8.2g} {:>7.4f}", step.cpu_s, step.relmse, step.flip);
+    return text + "\n";
+}
+
+/// The middle one of an odd number, the mean of the middle two of an even one.
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+MeasuredStep median_of(std::size_t step) {
+    const auto median = [&](double MeasuredStep::* figure) {
+        std::vector<double> values;
+        for (const MeasuredShot& shot : kMeasuredShots) values.push_back(shot.steps[step].*figure);
+        return median_of(values);
+    };
+    return {median(&MeasuredStep::cpu_s), median(&MeasuredStep::relmse), median(&MeasuredStep::flip)};
+}
+
+/// What each step costs and loses on every sample shot.
+std::string measured_text() {
+    std::string text = fmt::format("\n  seconds of processor time a frame of {}, relMSE and FLIP against another seed of `reference` (tools/bench/quality.py)\n\n", kMeasuredSize);
+    text += fmt::format("  {:<12}", "");
+    std::array<MeasuredStep, kBlocks.size()> medians;
+    for (std::size_t i = 0; i < kBlocks.size(); ++i) text += fmt::format("  {:>9} {:>8} {:>7}", kBlocks[i].name, "relMSE", "FLIP"), medians[i] = median_of(i);
+    text += "\n";
+    for (const MeasuredShot& shot : kMeasuredShots) text += row_of(shot.name, shot.steps);
+    return text + row_of("median", medians);
+}
+
 }  // namespace
 
 std::string QualityBlock::yaml() const {
@@ -42,7 +77,7 @@ const QualityBlock* find_quality(std::string_view name) {
 std::string describe_quality() {
     std::string text = "quality\n  a step of the ladder: render.quality in a shot fills in what its render section does not give; --quality replaces it\n\n";
     for (const QualityBlock& block : kBlocks) text += fmt::format("  {:<10} {}\n  {:<10} {}\n", block.name, block.yaml(), "", block.purpose);
-    return text;
+    return text + measured_text();
 }
 
 }  // namespace kadr

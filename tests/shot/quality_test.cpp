@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "shot/quality_measured.h"
 #include "shot/shot_fixture.h"
 
 namespace kadr {
@@ -53,6 +54,23 @@ TEST_F(Quality, EveryStepIsAShotAndNoneChangesThePictureThatIsMeant) {
         EXPECT_EQ(render.filter, plain.filter) << block.name;
         EXPECT_EQ(render.seed, plain.seed) << block.name;
     }
+}
+
+// The table is measured by tools/bench/quality.py, which says the same of its own figures: a ladder that is not one anymore is
+// not committed.
+TEST_F(Quality, EachStepCostsMoreAndErrsLessOnEverySample) {
+    for (const MeasuredShot& shot : kMeasuredShots)
+        for (std::size_t i = 1; i < shot.steps.size(); ++i) {
+            EXPECT_GT(shot.steps[i].cpu_s, shot.steps[i - 1].cpu_s) << shot.name << " " << i;
+            EXPECT_LT(shot.steps[i].relmse, shot.steps[i - 1].relmse) << shot.name << " " << i;
+            EXPECT_LT(shot.steps[i].flip, shot.steps[i - 1].flip) << shot.name << " " << i;
+        }
+}
+
+TEST_F(Quality, IsDescribedWithWhatItCostsOnEverySample) {
+    const std::string text = describe_quality();
+    for (const QualityBlock& block : quality_blocks()) EXPECT_THAT(text, ::testing::HasSubstr(block.yaml()));
+    for (const MeasuredShot& shot : kMeasuredShots) EXPECT_THAT(text, ::testing::HasSubstr(std::string("\n  ") + shot.name + " "));
 }
 
 TEST_F(Quality, IsRefusedWhereThereIsNone) {
