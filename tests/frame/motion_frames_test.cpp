@@ -4,10 +4,8 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <chrono>
 #include <cstddef>
 #include <cstring>
-#include <iostream>
 
 #include "frame/decompose.h"
 #include "stage.h"
@@ -245,7 +243,7 @@ TEST(MotionFrames, ArePreciseFarFromTheOrigin) {
     EXPECT_LE(worst_error_px(stage, snapshot, 0, node), 0.02);  // 320 m in floats: 3e-5 m, seen at 1920 px / m / 5 m
 }
 
-TEST(MotionFrames, OfAHundredThousandMovingNodesTakeUnderASecond) {
+TEST(MotionFrames, AreMadeOfAHundredThousandMovingNodes) {
     Stage stage;
     for (int i = 0; i < 100'000; ++i) {
         const int node = stage.add_node("n");
@@ -254,12 +252,8 @@ TEST(MotionFrames, OfAHundredThousandMovingNodesTakeUnderASecond) {
         stage.scene.clips[0].channels.back().rotation = track<glm::dquat>({{0, turn(0)}, {10, turn(50)}});
     }
     const BoundShot bound = stage.bind();
-    const auto start = std::chrono::steady_clock::now();
     const SceneSnapshot snapshot = make_snapshots(bound, bound.sequence().frame(1)).front();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::cout << "snapshot of 100,000 moving nodes: " << seconds << " s\n";
-    EXPECT_EQ(snapshot.instances.size(), 100'000u);
-    EXPECT_LT(seconds, 5) << "under 1 s on two free cores; five for a busy machine or a debug build";
+    EXPECT_EQ(snapshot.instances.size(), 100'000u);  // how long it takes is instances_bench's
 }
 
 RC_GTEST_PROP(MotionFramesProperty, ErrorStaysWithinTheTolerance, ()) {
