@@ -22,7 +22,7 @@ public:
 
 /// The library's denoiser, opened by the first call that finds it: KADR_OIDN_LIBRARY, else libOpenImageDenoise.so.2 where
 /// the system's loader looks, else in Kadr's cache folder and in the Python packages of this machine (pip install pyoidn).
-/// @throws InputError  where it is not found or is of another version; says where it was looked for
+/// @throws InputError  where none is found or opens; with the reason of the last one that was tried
 const Denoiser& oidn_denoiser();
 
 /// The same over one library file, not kept. @throws InputError

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.h"
+
 namespace kadr {
 namespace {
 
 constexpr std::size_t kColors = 3;
 
-/// Source: IEC 61966-2-1.
-double linear_of_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-double srgb_of_linear(double v) { return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
-
-double decoded(double v, ReelBlend space) { return space == ReelBlend::linear ? linear_of_srgb(v) : v; }
-double encoded(double v, ReelBlend space) { return space == ReelBlend::linear ? srgb_of_linear(v) : v; }
+double decoded(double v, ReelBlend space) { return space == ReelBlend::linear ? linear_from_srgb(v) : v; }
+double encoded(double v, ReelBlend space) { return space == ReelBlend::linear ? srgb_from_linear(v) : v; }
 
 glm::dvec3 color_sum(const std::vector<BlendColor>& colors, ReelBlend space) {
     glm::dvec3 sum(0);

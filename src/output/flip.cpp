@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "base/srgb.h"
 
 namespace kadr {
 namespace {
@@ -50,8 +51,6 @@ const glm::dmat3 kXyzFromRgb = glm::transpose(
                8788810.0 / 12288897.0, 887015.0 / 12288897.0, 1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
 const glm::dmat3 kRgbFromXyz = glm::inverse(kXyzFromRgb);
 const Color kWhite = kXyzFromRgb * Color(1);
-
-double linear_from_srgb(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
 
 Color opponent_from_rgb(const Color& rgb) {
     const Color xyz = kXyzFromRgb * rgb / kWhite;

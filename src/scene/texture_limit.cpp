@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/srgb.h"
 #include "kernels/texture/texture.h"
 
 namespace kadr {
@@ -14,9 +15,6 @@ using kernels::TexelFormat;
 using kernels::Vec4f;
 
 constexpr std::size_t kChannels = 4;
-
-/// Source: IEC 61966-2-1.
-double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 
 bool is_srgb(TexelFormat format) { return format == TexelFormat::rgba8_srgb || format == TexelFormat::rgba16_srgb; }
 bool is_wide(TexelFormat format) { return format == TexelFormat::rgba16_srgb || format == TexelFormat::rgba16_linear; }

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
 import program
 from program import ProgramTest, png, texts_but_seconds
@@ -83,6 +84,15 @@ class Render(ProgramTest):
                                           r"libOpenImageDenoise.so.2; or use render.denoise: none")
         self.assertEqual(list(self.folder.glob("out*")), [])
         self.assertFalse({row["name"]: row for row in map(json.loads, self.run_kadr("devices", "--json").out.splitlines())}["oidn"]["usable"])
+
+    def test_a_denoiser_gets_albedo_and_normals_and_leaves_only_what_was_asked_for(self):
+        # Stands in for the library: color + 2 albedo + 3 normal, so without its guides the picture would stay as it is.
+        self.denoiser = str(Path(program.BUILD) / "tests" / "denoise" / "libfake_oidn.so")
+        self.run_kadr("render", self.shot, "--frames", "0")
+        plain = png(self.folder / "out" / "ball.0000.png")[0]
+        self.run_kadr("render", self.shot, "--frames", "0", "--set", "render.denoise=oidn")
+        self.assertNotEqual(plain, png(self.folder / "out" / "ball.0000.png")[0])
+        self.assertEqual(json.loads(self.run_kadr("info", "--json", "out/ball.0000.png").out)["denoise"], "oidn 2.3.4")
 
     @unittest.skipUnless(os.environ.get("KADR_TEST_OIDN_LIBRARY"), "KADR_TEST_OIDN_LIBRARY names no libOpenImageDenoise.so.2")
     def test_denoised_frames_are_others_and_say_so(self):

@@ -121,6 +121,17 @@ TEST(ErrorEstimate, HighEndTakesTheNeighboursForTheTruth) {
     EXPECT_LE(e.relmse_low, e.relmse);
 }
 
+/// What one half says at the least is there: the darker half bounds what the neighbours may say.
+TEST(ErrorEstimate, HighEndTakesNoLessThanTheDarkerHalf) {
+    Film film(21, 21, {});
+    for (int y = 0; y < 21; ++y)
+        for (int x = 0; x < 21; ++x) put(film, x, y, 0.01f, 32, 0.01f, 32);
+    put(film, 10, 10, 1.0f, 32, 0.1f, 32);
+    const double error = 0.2025 / (0.1 * 0.1 + 0.01), mean = error / 441;  // 0.9² / 4; neighbours alone: over 0.01² + 0.01
+    const double spread = std::sqrt(error * error / 441 - mean * mean) / 21;
+    EXPECT_NEAR(estimate_error(film).relmse_high, mean + 1.96 * std::sqrt(2.0) * spread, 1e-5 * mean);
+}
+
 /// What is bright in both halves is bright, whatever lies around.
 TEST(ErrorEstimate, HighEndDoesNotTakeEdgesForNoise) {
     Film film(21, 21, {});

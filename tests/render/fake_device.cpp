@@ -7,7 +7,7 @@ namespace {
 class FakeDevice : public Device {
 public:
     std::string name() const override { return "fake (no lanes, 1 threads)"; }
-    void load(const Scene&, const Image*, const BuildSettings&) override {}
+    void load(const Scene&, const Image*, const BuildSettings& build) override { fake_device().build = build; }
     void set_frame(const SceneSnapshot& snapshot) override {
         ++fake_device().set_frames;
         frame_ = snapshot.frame_number;

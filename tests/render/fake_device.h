@@ -8,6 +8,7 @@ namespace kadr {
 
 /// What the fake device does; set by a test before it renders.
 struct FakeDeviceScript {
+    BuildSettings build;                              ///< of the last load()
     int renders = 0;                                  ///< calls of render() so far
     int set_frames = 0;                               ///< calls of set_frame() so far
     std::vector<Pass> passes;                         ///< as they came

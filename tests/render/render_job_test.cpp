@@ -11,6 +11,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/fake_device.h"
+#include "render/loaded_shot.h"
 #include "render/tiny_shot.h"
 
 namespace kadr {
@@ -167,6 +168,30 @@ TEST_F(RenderJobTest, AnUnwritableFolderIsKnownBeforeTheFirstRay) {
         EXPECT_STREQ(error.what(), "cannot write to the folder /dev/null: /dev/null is not a folder");
     }
     EXPECT_EQ(fake_device().renders, 0);
+}
+
+TEST_F(RenderJobTest, TheDeviceIsToldHowStructuresAreBuilt) {
+    run();
+    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::medium, false}));
+    options_.overrides.set = {{"render.build", "high"}, {"render.robust", "true"}};
+    run();
+    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::high, true}));
+}
+
+TEST(LoadedShot, TexturesAreNoLargerThanTheShotAllows) {
+    const auto largest = [](std::vector<std::pair<std::string, std::string>> set) {
+        ShotOverrides overrides;
+        overrides.set = std::move(set);
+        const LoadedShot loaded(parse_shot(fs::path(KADR_SOURCE_DIR) / "shots/turntable.yaml", overrides));
+        int side = 0;
+        for (const TextureData& texture : loaded.scene().textures) {
+            side = std::max({side, texture.width, texture.height});
+            EXPECT_EQ(texture.texels.size() % (static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height) * 4), 0u);
+        }
+        return side;
+    };
+    EXPECT_GT(largest({}), 16);
+    EXPECT_EQ(largest({{"render.texture_limit", "16 px"}}), 16);
 }
 
 TEST_F(RenderJobTest, MetersTheShotsFirstFrameWhateverIsRendered) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/embree/alpha_filter.h"
+#include "device/tables/deformed_geometry.h"
 #include "device/tables/material_table.h"
 
 namespace kadr {
@@ -37,7 +38,7 @@ void DeformingMeshes::set_frame(const SceneSnapshot& snapshot, const kernels::Sc
         if (!entry.user) entry.user = std::make_unique<GeometryUser>();
         *entry.user = {&view, static_cast<unsigned>(geometries.size()), key.second, cull_backfaces};
         update(entry, mesh, view.materials[key.second], cull_backfaces);
-        geometries.push_back(view_of(entry));
+        geometries.push_back(geometry_of(*entry.mesh, scene_.geometries[entry.mesh->geometry]));
         bends_ = bends_ || mesh->key_count > 1;
     }
 }
@@ -101,20 +102,6 @@ void DeformingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedM
     point_at(entry, *mesh);
     rtcCommitGeometry(entry.triangles.get());
     rtcCommitScene(entry.structure.get());
-}
-
-kernels::Geometry DeformingMeshes::view_of(const Entry& entry) const {
-    const GeometryData& source = scene_.geometries[entry.mesh->geometry];
-    kernels::Geometry g{};
-    g.vertices = entry.mesh->vertices.data();
-    g.vertex_count = static_cast<unsigned>(source.positions.size());
-    g.key_count = entry.mesh->key_count;
-    g.indices = source.indices.data();
-    g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
-    if (!entry.mesh->tangents.empty()) g.tangents = entry.mesh->tangents.data();
-    if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
-    if (!source.colors.empty()) g.colors = source.colors.data();
-    return g;
 }
 
 }  // namespace kadr

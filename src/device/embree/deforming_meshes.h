@@ -79,7 +79,6 @@ private:
     void update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, const kernels::Material& material, bool cull_backfaces);
     void create(Entry& entry, const kernels::Material& material, bool cull_backfaces, RTCBuildQuality quality);
     void point_at(Entry& entry, const DeformedMesh& mesh);
-    kernels::Geometry view_of(const Entry& entry) const;
 
     RTCDevice device_;
     const Scene& scene_;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "device/hiprt/rigid_meshes.h"
+#include "device/tables/deformed_geometry.h"
 
 namespace kadr {
 namespace {
@@ -90,17 +91,7 @@ void BendingMeshes::set_previous(const SceneSnapshot& snapshot) {
 }
 
 kernels::Geometry BendingMeshes::host_of(const DeformedMesh& mesh) const {
-    const GeometryData& source = scene_.geometries[mesh.geometry];
-    kernels::Geometry g{};
-    g.vertices = mesh.vertices.data();
-    g.vertex_count = static_cast<unsigned>(source.positions.size());
-    g.key_count = mesh.key_count;
-    g.indices = source.indices.data();
-    g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
-    if (!mesh.tangents.empty()) g.tangents = mesh.tangents.data();
-    if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
-    if (!source.colors.empty()) g.colors = source.colors.data();
-    return g;
+    return geometry_of(mesh, scene_.geometries[mesh.geometry]);
 }
 
 kernels::Geometry BendingMeshes::host(const SceneSnapshot& snapshot, int deformed) const {
