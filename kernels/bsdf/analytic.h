@@ -18,7 +18,7 @@ SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, Vec
     const F n_o = max(dot(n, wo), zero);
     const F n_i = dot(n, wi);
     const Vec3<F> sum = wo + wi;
-    const F sum2 = max(dot(sum, sum), F(1e-20f));
+    const F sum2 = max(dot(sum, sum), least_divisor<F>(1e-20f));
     const F h_o = F(0.5f) * sqrt(sum2);
     const F n_sum = dot(n, sum);
     const Vec3<F> n_cross_sum = cross(n, sum);

@@ -43,8 +43,8 @@ struct BsdfSample {
 template <class F>
 SHARED_FN F table_bilinear(const float* t, Int<F> at, F fx, F fy) {
     constexpr int n = kAlbedoTableSize;
-    const F low = lerp(gather(t, at), gather(t + 1, at), fx);
-    const F high = lerp(gather(t + n, at), gather(t + n + 1, at), fx);
+    const F low = lerp<F>(gather(t, at), gather(t + 1, at), fx);
+    const F high = lerp<F>(gather(t + n, at), gather(t + n + 1, at), fx);
     return lerp(low, high, fy);
 }
 
@@ -76,7 +76,7 @@ SHARED_FN F compensated_albedo(F f0, F white, F schlick, F missing) {
 /// @param cos_o  cosine between the shading normal and the viewer, > 0
 template <class F>
 SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o) {
-    const F one(1.0f), tiny(1e-20f), f0(kDielectricF0);
+    const F one(1.0f), tiny = least_divisor<F>(1e-20f), f0(kDielectricF0);
     F white, schlick;
     lobe_albedo(cos_o, roughness, white, schlick);
     const F missing = (one - white) / white;
@@ -107,7 +107,7 @@ template <class F>
 SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
     const F zero(0.0f), one(1.0f);
     const Vec3<F> sum = wo + wi;
-    const F sum2 = max(dot(sum, sum), F(1e-20f));
+    const F sum2 = max(dot(sum, sum), least_divisor<F>(1e-20f));
     const F alpha2 = b.alpha * b.alpha;
     // D = alpha^2 / (pi t^2); from the sines of h, because 1 - cos^2 would lose every digit of a narrow lobe.
     const F t = (sum.x * sum.x + sum.y * sum.y + alpha2 * sum.z * sum.z) / sum2;
@@ -117,7 +117,7 @@ SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
     // G1 = 2 cos_o / (cos_o + root_o). Both over one common denominator.
     const F masking = wi.z * root_o + wo.z * root_i;
     const F visible = wo.z + root_o;
-    const F common = F(0.5f * kInvPi) * alpha2 / max(t * t * masking * visible, F(1e-34f));
+    const F common = F(0.5f * kInvPi) * alpha2 / max(t * t * masking * visible, least_divisor<F>(1e-34f));
     const F lobe = common * wi.z * visible;
     const F lobe_pdf = common * masking;
     const F fresnel = schlick_weight(F(0.5f) * sqrt(sum2));  // |wo + wi| = 2 cos of the half angle

@@ -18,7 +18,7 @@ SHARED_FN F ggx_alpha(F roughness) {
 template <class F>
 SHARED_FN F ggx_d(F sin2_h, F cos2_h, F alpha2) {
     const F t = sin2_h + alpha2 * cos2_h;
-    return alpha2 / max(F(kPi) * t * t, F(1e-30f));
+    return alpha2 / max(F(kPi) * t * t, least_divisor<F>(1e-30f));
 }
 
 /// cos sqrt(1 + alpha^2 tan^2): what Smith's masking is made of.  G1 = 2 cos / (cos + root).

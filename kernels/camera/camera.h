@@ -65,8 +65,8 @@ struct CameraPose {
 static_assert(sizeof(CameraKey) == 11 * sizeof(float), "gathered as floats");
 
 template <class F>
-SHARED_FN CameraPose<F> camera_key(const Camera& camera, Int<F> key) {
-    const float* k = &camera.keys->position.x;
+SHARED_FN CameraPose<F> camera_key(const CameraOf<Real<F>>& camera, Int<F> key) {
+    const Real<F>* k = &camera.keys->position.x;
     const Int<F> i = key * Int<F>(11);
     return {gather_vec3<F>(k, i), {gather(k + 3, i), gather(k + 4, i), gather(k + 5, i), gather(k + 6, i)},
             gather(k + 7, i),     gather(k + 8, i),
@@ -75,7 +75,7 @@ SHARED_FN CameraPose<F> camera_key(const Camera& camera, Int<F> key) {
 
 /// One key for all lanes.
 template <class F>
-SHARED_FN CameraPose<F> camera_key_uniform(const CameraKey& k) {
+SHARED_FN CameraPose<F> camera_key_uniform(const CameraKeyOf<Real<F>>& k) {
     return {splat<F>(k.position), {F(k.rotation[0]), F(k.rotation[1]), F(k.rotation[2]), F(k.rotation[3])},
             F(k.tan_half_width),  F(k.tan_half_height),
             F(k.lens_radius),     F(k.focus_distance)};
@@ -93,7 +93,7 @@ SHARED_FN CameraPose<F> interpolate(const CameraPose<F>& a, const CameraPose<F>&
 
 /// The camera at a time of the shutter in [0, 1].
 template <class F>
-SHARED_FN CameraPose<F> camera_at(const Camera& camera, F time) {
+SHARED_FN CameraPose<F> camera_at(const CameraOf<Real<F>>& camera, F time) {
     if (camera.key_count == 1) return camera_key_uniform<F>(camera.keys[0]);
     if (camera.key_count == 2) {
         return interpolate(camera_key_uniform<F>(camera.keys[0]), camera_key_uniform<F>(camera.keys[1]), time);
@@ -116,7 +116,7 @@ SHARED_FN Vec2<F> sample_aperture(int blades, Vec2<F> u) {
 /// @param lens       point of the unit square; unused by a pinhole
 /// @param direction  unit length
 template <class F>
-SHARED_FN void camera_ray(const Camera& camera, int width, int height, Vec2<F> film_px, F time, Vec2<F> lens,
+SHARED_FN void camera_ray(const CameraOf<Real<F>>& camera, int width, int height, Vec2<F> film_px, F time, Vec2<F> lens,
                           Vec3<F>& origin, Vec3<F>& direction) {
     const CameraPose<F> pose = camera_at(camera, time);
     const F x = (film_px.x * F(2.0f / static_cast<float>(width)) - F(1.0f)) * pose.tan_half_width;
@@ -139,10 +139,10 @@ SHARED_FN void camera_ray(const Camera& camera, int width, int height, Vec2<F> f
 /// Where a point appears on the film, in pixels (x right, y down); the inverse of a pinhole's camera_ray. Points behind
 /// the camera land far off the image.
 template <class F>
-SHARED_FN Vec2<F> project(const Camera& camera, int width, int height, Vec3<F> p, F time) {
+SHARED_FN Vec2<F> project(const CameraOf<Real<F>>& camera, int width, int height, Vec3<F> p, F time) {
     const CameraPose<F> pose = camera_at(camera, time);
     const Vec3<F> local = rotate_back(pose.rotation, p - pose.position);
-    const F depth = camera.orthographic ? F(1.0f) : max(-local.z, F(1e-9f));
+    const F depth = camera.orthographic ? F(1.0f) : max(-local.z, least_divisor<F>(1e-9f));
     const F x = local.x / (depth * pose.tan_half_width);
     const F y = local.y / (depth * pose.tan_half_height);
     return {(x + F(1.0f)) * F(0.5f * static_cast<float>(width)), (F(1.0f) - y) * F(0.5f * static_cast<float>(height))};

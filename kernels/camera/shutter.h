@@ -37,7 +37,7 @@ template <class F>
 SHARED_FN F light_passed(const Shutter& shutter, F fraction) {
     const F scaled = saturate(fraction) * F(static_cast<float>(Shutter::kIntervals));
     const Int<F> cell = clamp_index<F>(truncate(scaled), 0, Shutter::kIntervals - 1);
-    return lerp(gather(shutter.passed, cell), gather(shutter.passed + 1, cell), scaled - F(cell));
+    return lerp<F>(gather(shutter.passed, cell), gather(shutter.passed + 1, cell), scaled - F(cell));
 }
 
 /// When a sample is taken: by the inverse of the curve's integral, so that samples of equal weight lie densest where most

@@ -48,7 +48,7 @@ __device__ inline void render_thread(const LaunchParams& params) {
     if (!is_wanted(params, x, y)) return;
     LaunchCounters counters{};
     HiprtTracer tracer(params, kIntegrator == IntegratorKind::direct, counters);
-    PixelDriver<R, kIntegrator, HiprtTracer>(params, tracer, x, y).render(counters);
+    PixelDriver<float, R, kIntegrator, HiprtTracer>(params, tracer, x, y).render(counters);
     add_counters(*params.counters, counters);
 }
 

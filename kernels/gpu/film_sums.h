@@ -8,42 +8,45 @@
 namespace kadr::kernels {
 
 /// What a path leaves behind.
+template <class T>
 struct SampleResult {
-    Vec3f radiance{0, 0, 0};  ///< not a number: to be dropped
-    float weight = 1;         ///< of the pixel filter
-    float light = 1;          ///< weight in time
-    float alpha = 0;
-    Vec3f albedo{0, 0, 0}, normal{0, 0, 0};
-    float depth = 0;
-    Vec2f motion{0, 0};
+    Vec3<T> radiance{0, 0, 0};  ///< not a number: to be dropped
+    T weight = 1;               ///< of the pixel filter
+    T light = 1;                ///< weight in time
+    T alpha = 0;
+    Vec3<T> albedo{0, 0, 0}, normal{0, 0, 0};
+    T depth = 0;
+    Vec2<T> motion{0, 0};
     bool met_surface = false;  ///< depth and motion are those of a surface
 };
 
-SHARED_FN void add_surface(const SampleResult& s, FilmSurface& sums) {
-    const float albedo[3] = {s.albedo.x, s.albedo.y, s.albedo.z}, normal[3] = {s.normal.x, s.normal.y, s.normal.z};
+template <class T>
+SHARED_FN void add_surface(const SampleResult<T>& s, FilmSurface& sums) {
+    const T albedo[3] = {s.albedo.x, s.albedo.y, s.albedo.z}, normal[3] = {s.normal.x, s.normal.y, s.normal.z};
     for (int c = 0; c < 3; ++c) {
-        sums.albedo[c] += albedo[c] * s.light;
-        sums.normal[c] += normal[c] * s.light;
+        sums.albedo[c] += static_cast<float>(albedo[c] * s.light);
+        sums.normal[c] += static_cast<float>(normal[c] * s.light);
     }
-    sums.motion[0] += s.motion.x * s.light;
-    sums.motion[1] += s.motion.y * s.light;
+    sums.motion[0] += static_cast<float>(s.motion.x * s.light);
+    sums.motion[1] += static_cast<float>(s.motion.y * s.light);
     if (!s.met_surface || !is_finite(s.depth)) return;
-    sums.depth += s.depth * s.light;
-    sums.depth_weight += s.light;
+    sums.depth += static_cast<float>(s.depth * s.light);
+    sums.depth_weight += static_cast<float>(s.light);
 }
 
 /// @return false: the sample is not finite, and was not added
-SHARED_FN bool add_sample(const FilmView& film, unsigned long pixel, const SampleResult& s) {
-    const float sum = s.radiance.x + s.radiance.y + s.radiance.z;
+template <class T>
+SHARED_FN bool add_sample(const FilmView& film, unsigned long pixel, const SampleResult<T>& s) {
+    const T sum = s.radiance.x + s.radiance.y + s.radiance.z;
     if (!(abs(sum) <= 3.4028234e38f)) return false;
     ++film.samples[pixel];
-    const float w = s.weight * s.light;
-    if (film.weights) film.weights[pixel] += s.light;
+    const T w = s.weight * s.light;
+    if (film.weights) film.weights[pixel] += static_cast<float>(s.light);
     FilmBeauty& beauty = film.beauty[pixel];
-    beauty.r += s.radiance.x * w;
-    beauty.g += s.radiance.y * w;
-    beauty.b += s.radiance.z * w;
-    beauty.alpha += s.alpha * w;
+    beauty.r += static_cast<float>(s.radiance.x * w);
+    beauty.g += static_cast<float>(s.radiance.y * w);
+    beauty.b += static_cast<float>(s.radiance.z * w);
+    beauty.alpha += static_cast<float>(s.alpha * w);
     if (film.surface) add_surface(s, film.surface[pixel]);
     return true;
 }

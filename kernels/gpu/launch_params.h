@@ -43,8 +43,9 @@ struct LaunchCounters {
 
 /// One launch: samples [first_sample, first_sample + sample_count) of one half, of the pixels in [x0, x1) x [y0, y1).
 /// Launches of a half must come in the order of their samples: sums are in that order.
-struct LaunchParams {
-    SceneView scene;
+template <class T>
+struct LaunchParamsOf {
+    SceneViewOf<T> scene;
     const void* top;              ///< hiprtScene; null: nothing to meet
     const void* functions;        ///< hiprtFuncTable of the geometry types below; null: no geometry has a type
     const unsigned* instance_of;  ///< [instance of `top`] index into SceneView::instances
@@ -59,6 +60,7 @@ struct LaunchParams {
     int first_sample, sample_count;
     bool centred;  ///< one sample in all: the pixel's centre, a pinhole, the shutter's opening
 };
+using LaunchParams = LaunchParamsOf<float>;
 
 /// hiprtGeometryBuildInput::geomType, the row of the function table that rays ask about a hit. What every ray stops at
 /// is of no type (hiprtInvalidValue).

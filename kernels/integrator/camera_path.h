@@ -19,7 +19,7 @@ struct CameraSample {
 /// @param seed     of the half of the film that the sample belongs to
 /// @param centred  through the pixel's centre and the lens' too, at the shutter's opening
 template <class F>
-SHARED_FN CameraSample<F> start_path(const SceneView& scene, const FilterTable& filter, const Shutter& shutter,
+SHARED_FN CameraSample<F> start_path(const SceneFor<F>& scene, const FilterTable& filter, const Shutter& shutter,
                                      unsigned seed, bool centred, Int<F> x, Int<F> y, UInt<F> sample) {
     CameraSample<F> start;
     const Sampler<F> sampler = make_sampler<F>(x, y, sample, seed);

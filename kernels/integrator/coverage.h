@@ -21,8 +21,9 @@ SHARED_FN unsigned coverage_key(unsigned sampler_key, unsigned sample, unsigned 
 }
 
 /// Coverage at a hit: factor, texture and vertex colour.
-SHARED_FN float coverage(const SceneView& scene, const Material& material, const Geometry& geometry, unsigned primitive,
-                         float u, float v) {
+template <class T>
+SHARED_FN float coverage(const SceneViewOf<T>& scene, const Material& material, const Geometry& geometry,
+                         unsigned primitive, float u, float v) {
     const unsigned* index = geometry.indices + 3 * static_cast<unsigned long>(primitive);
     const float w = 1.0f - u - v;
     float alpha = material.alpha;
@@ -50,7 +51,8 @@ SHARED_FN float coverage_chance(unsigned key, unsigned primitive, unsigned geome
 ///
 /// @param cull    back faces of single-sided materials let rays pass
 /// @param facing  dot product of the geometric normal and the ray, of any length: above 0, the back is seen
-SHARED_FN bool stops_at(const SceneView& scene, unsigned geometry, unsigned material_index, unsigned primitive, float u,
+template <class T>
+SHARED_FN bool stops_at(const SceneViewOf<T>& scene, unsigned geometry, unsigned material_index, unsigned primitive, float u,
                         float v, bool cull, float facing, CoverageRay& ray) {
     const Material& material = scene.materials[material_index];
     if (cull && !material.double_sided && facing > 0) return false;

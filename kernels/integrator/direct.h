@@ -23,7 +23,7 @@ struct DirectResult {
 /// @param emitted  called once, with the light that the surface emits towards the viewer
 /// @param shadow   called after that with a ShadowRay<F> for every light that can reach some lane
 template <class F, unsigned R, class Emitted, class Shadow>
-SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit,
+SHARED_FN DirectResult<F> shade_direct(const SceneFor<F>& scene, const PathState<F>& path, const Hit<F>& hit,
                                        Mask<F> active, const Emitted& emitted, const Shadow& shadow) {
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
@@ -35,7 +35,7 @@ SHARED_FN DirectResult<F> shade_direct(const SceneView& scene, const PathState<F
     result.normal = it.shading_normal;
     const Mask<F> lit = active & !it.unlit;
     for (int i = 0; i < scene.lights.count; ++i) {
-        const Light* keys = scene.lights.keys + scene.lights.first[i];
+        const LightOf<Real<F>>* keys = scene.lights.keys + scene.lights.first[i];
         const LightSample<F> light =
             sample_light(keys, scene.lights.key_count[i], path.time, it.origin, Vec2<F>{F(0.5f), F(0.5f)});
         const F cosine = max(dot(it.shading_normal, light.direction), F(0.0f));

@@ -35,6 +35,10 @@ SHARED_FN F offset_coordinate(F p, F n) {
     const UInt<F> moved = select(p < F(0.0f), as_uint(p) - UInt<F>(ulps), as_uint(p) + UInt<F>(ulps));
     return select(abs(p) < F(1.0f / 32), p + n * F(1.0f / 65536), as_float(moved));
 }
+#if !KADR_DEVICE_CODE
+/// In double the same step would be as wide as in float. 2^-44 is as many units in the last place as 256 at coordinate 1.
+SHARED_FN double offset_coordinate(double p, double n) { return p + n * max(abs(p), 1.0) * 0x1p-44; }
+#endif
 template <class F>
 SHARED_FN Vec3<F> offset_origin(Vec3<F> p, Vec3<F> n) {
     return {offset_coordinate(p.x, n.x), offset_coordinate(p.y, n.y), offset_coordinate(p.z, n.z)};
@@ -44,6 +48,14 @@ SHARED_FN Vec3<F> offset_origin(Vec3<F> p, Vec3<F> n) {
 /// by less beyond (below 3.6° it interpolates linearly, within 2e-6). The surface that rays meet lies as far from ours
 /// as its points from what they turn about, and rays have to start clear of it.
 inline constexpr float kSlerpError = 2.5e-5f;
+
+/// How far rays start from a surface beyond the offset in its mesh's own coordinates. The reference in double also stays
+/// clear of what rounding leaves of a place in the world.
+template <class F>
+SHARED_FN F clearance(F rotation_error_m, const Interaction<F>& it) {
+    if constexpr (sizeof(Real<F>) == 8) return rotation_error_m + length(it.position) * 0x1p-49;
+    return rotation_error_m;
+}
 
 /// A 3x4 matrix in every lane.
 template <class F>
@@ -69,32 +81,48 @@ struct AffineLanes {
     }
 };
 
-template <class F>
-SHARED_FN void set_vec(Vec3<F>& v, int i, Vec3f x) {
+template <class F, class T>
+SHARED_FN void set_vec(Vec3<F>& v, int i, Vec3<T> x) {
     set_lane(v.x, i, x.x);
     set_lane(v.y, i, x.y);
     set_lane(v.z, i, x.z);
 }
-template <class F>
-SHARED_FN void set_vec(Vec2<F>& v, int i, Vec2f x) {
+template <class F, class T>
+SHARED_FN void set_vec(Vec2<F>& v, int i, Vec2<T> x) {
     set_lane(v.x, i, x.x);
     set_lane(v.y, i, x.y);
 }
-template <class F>
-SHARED_FN void set_vec(Vec4<F>& v, int i, Vec4f x) {
+template <class F, class T>
+SHARED_FN void set_vec(Vec4<F>& v, int i, Vec4<T> x) {
     set_lane(v.x, i, x.x);
     set_lane(v.y, i, x.y);
     set_lane(v.z, i, x.z);
     set_lane(v.w, i, x.w);
 }
 
-SHARED_FN Vec3f barycentric(Vec3f a, Vec3f b, Vec3f c, float u, float v) { return a * (1.0f - u - v) + b * u + c * v; }
+template <class T>
+SHARED_FN Vec3<T> barycentric(Vec3<T> a, Vec3<T> b, Vec3<T> c, T u, T v) {
+    return a * (1.0f - u - v) + b * u + c * v;
+}
+
+/// Attributes of a triangle's vertices at (u, v).
+template <class T>
+SHARED_FN Vec2<T> mix(Vec2f a, Vec2f b, Vec2f c, T u, T v) {
+    const T w = 1.0f - u - v;
+    return {a.x * w + b.x * u + c.x * v, a.y * w + b.y * u + c.y * v};
+}
+template <class T, class A>
+SHARED_FN Vec4<T> mix(Vec4<A> a, Vec4<A> b, Vec4<A> c, T u, T v) {
+    const T w = 1.0f - u - v;
+    return {a.x * w + b.x * u + c.x * v, a.y * w + b.y * u + c.y * v, a.z * w + b.z * u + c.z * v,
+            a.w * w + b.w * u + c.w * v};
+}
 
 /// UVs at a point of a triangle.
-SHARED_FN Vec2f uv_at(const Geometry& g, const unsigned* index, int set, float u, float v) {
-    const float w = 1.0f - u - v;
-    if (set == 0) return g.vertices[index[0]].uv * w + g.vertices[index[1]].uv * u + g.vertices[index[2]].uv * v;
-    return g.uv1 ? g.uv1[index[0]] * w + g.uv1[index[1]] * u + g.uv1[index[2]] * v : Vec2f{0, 0};
+template <class T>
+SHARED_FN Vec2<T> uv_at(const Geometry& g, const unsigned* index, int set, T u, T v) {
+    if (set == 0) return mix(g.vertices[index[0]].uv, g.vertices[index[1]].uv, g.vertices[index[2]].uv, u, v);
+    return g.uv1 ? mix(g.uv1[index[0]], g.uv1[index[1]], g.uv1[index[2]], u, v) : Vec2<T>{0, 0};
 }
 
 /// Vertex attributes that only textured surfaces need.
@@ -106,31 +134,27 @@ struct SurfaceMaps {
 };
 
 /// Tangent of a vertex between two keys; the handedness is the same in all of them.
-SHARED_FN Vec4f tangent_at(const Geometry& g, const VertexKeys& keys, unsigned vertex) {
+template <class T>
+SHARED_FN Vec4<T> tangent_at(const Geometry& g, const VertexKeys<T>& keys, unsigned vertex) {
     const Vec4f a = g.tangents[keys.first + vertex];
-    if (g.key_count <= 1) return a;
+    if (g.key_count <= 1) return {a.x, a.y, a.z, a.w};
     const Vec4f b = g.tangents[keys.second + vertex];
-    return {lerp(a.x, b.x, keys.fraction), lerp(a.y, b.y, keys.fraction), lerp(a.z, b.z, keys.fraction), a.w};
+    return {lerp<T>(a.x, b.x, keys.fraction), lerp<T>(a.y, b.y, keys.fraction), lerp<T>(a.z, b.z, keys.fraction), a.w};
 }
 
 /// Attributes that not every mesh has, of one lane.
 template <class F>
-SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const VertexKeys& keys, const unsigned* index, float u,
-                          float v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
-    const float w = 1.0f - u - v;
+SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const VertexKeys<Real<F>>& keys, const unsigned* index,
+                          Real<F> u, Real<F> v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
     const unsigned a = index[0], b = index[1], c = index[2];
-    set_vec(maps.uv[1], i, g.uv1 ? g.uv1[a] * w + g.uv1[b] * u + g.uv1[c] * v : Vec2f{0, 0});
-    Vec4f tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
+    set_vec(maps.uv[1], i, uv_at(g, index, 1, u, v));
+    Vec4<Real<F>> tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
     if (g.tangents) {
-        const Vec4f ta = tangent_at(g, keys, a), tb = tangent_at(g, keys, b), tc = tangent_at(g, keys, c);
-        tangent = {ta.x * w + tb.x * u + tc.x * v, ta.y * w + tb.y * u + tc.y * v, ta.z * w + tb.z * u + tc.z * v,
-                   ta.w};
+        const Vec4<Real<F>> first = tangent_at(g, keys, a);
+        tangent = mix(first, tangent_at(g, keys, b), tangent_at(g, keys, c), u, v);
+        tangent.w = first.w;
     }
-    if (g.colors) {
-        const Vec4f ca = g.colors[a], cb = g.colors[b], cc = g.colors[c];
-        color = {ca.x * w + cb.x * u + cc.x * v, ca.y * w + cb.y * u + cc.y * v, ca.z * w + cb.z * u + cc.z * v,
-                 ca.w * w + cb.w * u + cc.w * v};
-    }
+    if (g.colors) color = mix(g.colors[a], g.colors[b], g.colors[c], u, v);
     set_vec(maps.tangent, i, tangent);
     set_vec(maps.color, i, color);
     set_lane(it.unlit, i, m.unlit);
@@ -155,7 +179,7 @@ SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> 
 /// @tparam R    set of requirement:: bits
 /// @param wo    unit vector back along the ray
 template <class F, unsigned R>
-SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& hit, F time, Vec3<F> wo,
+SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>& hit, F time, Vec3<F> wo,
                                           Mask<F> active) {
     constexpr bool kMaps = (R & requirement::kMaps) != 0, kTransforms = (R & requirement::kTransforms) != 0,
                    kDeformation = (R & requirement::kDeformation) != 0;
@@ -175,7 +199,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
         const Instance& instance = scene.instances[instance_index];
         const Geometry& g = scene.geometries[instance.geometry];
         const unsigned* index = g.indices + 3 * static_cast<unsigned long>(lane(hit.primitive, from));
-        VertexKeys keys;
+        VertexKeys<Real<F>> keys;
         if constexpr (kDeformation) {
             keys = vertex_keys(g, lane(time, from));
             set_lane(fraction, i, keys.fraction);
@@ -184,7 +208,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
         for (int c = 0; c < 3; ++c) rows[c][i] = &g.vertices[keys.first + index[c]].position.x;
         rows[3][i] = &scene.materials[instance.material].base_color.x;
         if constexpr (kTransforms) {
-            const Affine at = transform_at(scene, instance_index, lane(time, from));
+            const AffineOf<Real<F>> at = transform_at(scene, instance_index, lane(time, from));
             for (int r = 0; r < 3; ++r)
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
             const bool slerps = scene.motions[instance_index].kind == InstanceMotion::Kind::keys;
@@ -232,7 +256,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
     if constexpr (kTransforms) {
         const Vec3<F> translation{world_from_object.m[0][3], world_from_object.m[1][3], world_from_object.m[2][3]};
         it.origin = world_from_object.point(offset_origin(object_point, object_normal * side)) +
-                    it.geometric_normal * (side * rotation_error * length(it.position - translation));
+                    it.geometric_normal * (side * clearance<F>(rotation_error * length(it.position - translation), it));
     } else {
         it.origin = offset_origin(object_point, object_normal * side);
     }
@@ -259,51 +283,50 @@ SHARED_FN Interaction<F> make_interaction(const SceneView& scene, const Hit<F>& 
 
 /// Textures, lane by lane: base colour, metallic-roughness, emission and the normal map.
 template <class F>
-SHARED_FN void apply_maps(const SceneView& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side, Mask<F> active,
-                          Interaction<F>& it) {
+SHARED_FN void apply_maps(const SceneFor<F>& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side,
+                          Mask<F> active, Interaction<F>& it) {
+    using T = Real<F>;
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
         const int i = lowest_bit(todo);
         const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
-        const Vec2f uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)},
+        const Vec2<T> uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)},
             uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
-        const Vec4f vertex_color{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i),
-                                 lane(maps.color.w, i)};
-        Vec3f base = m.base_color * Vec3f{vertex_color.x, vertex_color.y, vertex_color.z};
-        float alpha = m.alpha * vertex_color.w;
+        Vec3<T> base = splat<T>(m.base_color) * Vec3<T>{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i)};
+        T alpha = m.alpha * lane(maps.color.w, i);
         if (m.base_color_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.base_color_texture.texture,
-                                                  apply_transform(m.base_color_texture, uv0, uv1), true);
-            base = base * Vec3f{t.x, t.y, t.z};
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.base_color_texture.texture,
+                                                apply_transform(m.base_color_texture, uv0, uv1), true);
+            base = base * Vec3<T>{t.x, t.y, t.z};
             alpha *= t.w;
         }
         set_vec(it.base_color, i, base);
-        set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : 1.0f);
+        set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : T(1.0f));
         if (m.metallic_roughness_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.metallic_roughness_texture.texture,
-                                                  apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.metallic_roughness_texture.texture,
+                                                apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
             set_lane(it.roughness, i, m.roughness * t.y);
             set_lane(it.metallic, i, m.metallic * t.z);
         }
         if (m.emissive_texture.texture >= 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.emissive_texture.texture,
-                                                  apply_transform(m.emissive_texture, uv0, uv1), true);
-            set_vec(it.emission, i, m.emission * Vec3f{t.x, t.y, t.z});
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.emissive_texture.texture,
+                                                apply_transform(m.emissive_texture, uv0, uv1), true);
+            set_vec(it.emission, i, splat<T>(m.emission) * Vec3<T>{t.x, t.y, t.z});
         }
         if (m.unlit) set_vec(it.emission, i, base);
-        const Vec3f tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
+        const Vec3<T> tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
         if (m.normal_texture.texture >= 0 && dot(tangent, tangent) > 0) {
-            const Vec4f t = sample_texture<float>(scene.textures, m.normal_texture.texture,
-                                                  apply_transform(m.normal_texture, uv0, uv1), true);
-            const Vec3f local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.normal_texture.texture,
+                                                apply_transform(m.normal_texture, uv0, uv1), true);
+            const Vec3<T> local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
             // The tangent frame belongs to the front side; seen from behind, its normal points the other way.
-            const float s = lane(side, i);
-            const Vec3f n =
-                Vec3f{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
-            const Vec3f flat = tangent - n * dot(tangent, n);
+            const T s = lane(side, i);
+            const Vec3<T> n =
+                Vec3<T>{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
+            const Vec3<T> flat = tangent - n * dot(tangent, n);
             if (dot(flat, flat) > 1e-20f) {
-                const Vec3f tu = normalize(flat);
-                const Vec3f tv = cross(n * s, tu) * lane(maps.tangent.w, i);
-                const Vec3f bent = tu * local.x * s + tv * local.y * s + n * local.z;
+                const Vec3<T> tu = normalize(flat);
+                const Vec3<T> tv = cross(n * s, tu) * lane(maps.tangent.w, i);
+                const Vec3<T> bent = tu * local.x * s + tv * local.y * s + n * local.z;
                 if (dot(bent, bent) > 1e-20f) set_vec(it.shading_normal, i, normalize(bent));
             }
         }

@@ -44,7 +44,7 @@ struct ShadowRay {
 /// Power heuristic with exponent 2 (Veach 1997, 9.2.4), as a ratio so that nothing overflows.
 template <class F>
 SHARED_FN F mis_weight(F a, F b) {
-    const F r = b / max(a, F(1e-30f));
+    const F r = b / max(a, least_divisor<F>(1e-30f));
     return F(1.0f) / (F(1.0f) + r * r);
 }
 
@@ -77,71 +77,76 @@ SHARED_FN Vec3<F> clamp_contribution(const Settings& settings, Mask<F> direct, V
 /// Selection weight of the emissive triangles as one entry: their irradiance at p as if they were a ball around their
 /// centre. By position alone, so that a hit on one can ask for it too.
 template <class F>
-SHARED_FN F emitters_weight(const LightSet& lights, Vec3<F> p) {
+SHARED_FN F emitters_weight(const LightSetOf<Real<F>>& lights, Vec3<F> p) {
     const Vec3<F> d = p - splat<F>(lights.emitter_centre);
     return F(lights.emitted_power) / (dot(d, d) + F(lights.emitter_radius_squared));
 }
-SHARED_FN float environment_weight(const LightSet& lights) { return lights.map.average_luminance * kPi; }
+template <class T>
+SHARED_FN float environment_weight(const LightSetOf<T>& lights) {
+    return lights.map.average_luminance * kPi;
+}
 
 // ------------------------------------------------------------------------------------------------- light that rays hit
 
 /// Twice the area of a triangle in the world at a time of the shutter.
-SHARED_FN float doubled_area_at(const SceneView& scene, unsigned instance, unsigned primitive, float time) {
+template <class T>
+SHARED_FN T doubled_area_at(const SceneViewOf<T>& scene, unsigned instance, unsigned primitive, T time) {
     const Geometry& g = scene.geometries[scene.instances[instance].geometry];
     const unsigned* index = g.indices + 3 * static_cast<unsigned long>(primitive);
-    const Affine at = transform_at(scene, instance, time);
-    const VertexKeys keys = vertex_keys(g, time);
-    const Vec3f a = position_at(g, keys, index[0]);
-    const Vec3f edges[2] = {position_at(g, keys, index[1]) - a, position_at(g, keys, index[2]) - a};
-    Vec3f world[2];
+    const AffineOf<T> at = transform_at(scene, instance, time);
+    const VertexKeys<T> keys = vertex_keys(g, time);
+    const Vec3<T> a = position_at(g, keys, index[0]);
+    const Vec3<T> edges[2] = {position_at(g, keys, index[1]) - a, position_at(g, keys, index[2]) - a};
+    Vec3<T> world[2];
     for (int i = 0; i < 2; ++i)
         world[i] = {at.m[0][0] * edges[i].x + at.m[0][1] * edges[i].y + at.m[0][2] * edges[i].z,
                     at.m[1][0] * edges[i].x + at.m[1][1] * edges[i].y + at.m[1][2] * edges[i].z,
                     at.m[2][0] * edges[i].x + at.m[2][1] * edges[i].y + at.m[2][2] * edges[i].z};
-    const Vec3f n = cross(world[0], world[1]);
+    const Vec3<T> n = cross(world[0], world[1]);
     return sqrt(dot(n, n));
 }
 
 /// Emission of an emissive triangle seen along the path, weighted against having sampled it.
 template <class F, unsigned R>
-SHARED_FN F emitter_mis(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit, const Interaction<F>& it,
-                        Mask<F> active) {
+SHARED_FN F emitter_mis(const SceneFor<F>& scene, const PathState<F>& path, const Hit<F>& hit,
+                        const Interaction<F>& it, Mask<F> active) {
+    using T = Real<F>;
     F density(0.0f);
     for (unsigned todo = bits(active); todo; todo &= todo - 1) {
         const int i = lowest_bit(todo);
         const unsigned instance = static_cast<unsigned>(lane(hit.instance, i));
-        float per_area = scene.lights.instance_density[instance];
+        T per_area = scene.lights.instance_density[instance];
         if constexpr ((R & requirement::kDeformation) != 0) {
             // Chosen by the area at the shutter's opening (see stretched_density).
             if (per_area > 0 && scene.geometries[scene.instances[instance].geometry].key_count > 1) {
                 const unsigned primitive = static_cast<unsigned>(lane(hit.primitive, i));
-                per_area *= doubled_area_at(scene, instance, primitive, 0.0f) /
-                            max(doubled_area_at(scene, instance, primitive, lane(path.time, i)), 1e-30f);
+                per_area *= doubled_area_at(scene, instance, primitive, T(0.0f)) /
+                            max(doubled_area_at(scene, instance, primitive, lane(path.time, i)), least_divisor<T>(1e-30f));
             }
         }
         set_lane(density, i, per_area);
     }
     const Vec3<F> d = it.position - path.origin;
     const F distance2 = dot(d, d);
-    const F cosine = max(abs(dot(it.geometric_normal, path.direction)), F(1e-7f));
-    const F selected = emitters_weight(scene.lights, path.origin) / max(path.light_weight, F(1e-30f));
+    const F cosine = max(abs(dot(it.geometric_normal, path.direction)), least_divisor<F>(1e-7f));
+    const F selected = emitters_weight(scene.lights, path.origin) / max(path.light_weight, least_divisor<F>(1e-30f));
     const F light_pdf = selected * density * distance2 / cosine;
     return select((path.bsdf_pdf > F(0.0f)) & (density > F(0.0f)), mis_weight(path.bsdf_pdf, light_pdf), F(1.0f));
 }
 
 /// Lights with a surface (spheres, rectangles, suns with an angle) that the ray meets before `distance`.
 template <class F>
-SHARED_FN Vec3<F> visible_lights(const SceneView& scene, const PathState<F>& path, F distance, Mask<F> active) {
+SHARED_FN Vec3<F> visible_lights(const SceneFor<F>& scene, const PathState<F>& path, F distance, Mask<F> active) {
     Vec3<F> sum{F(0.0f), F(0.0f), F(0.0f)};
-    const LightSet& lights = scene.lights;
+    const LightSetOf<Real<F>>& lights = scene.lights;
     for (int i = 0; i < lights.visible_count; ++i) {
-        const Light* keys = lights.keys + lights.first[i];
+        const LightOf<Real<F>>* keys = lights.keys + lights.first[i];
         const LightHit<F> hit = intersect_light(keys, lights.key_count[i], path.time, path.origin, path.direction);
         // A sun's distance is kInfinity itself: it shines where the ray meets nothing.
         const Mask<F> seen = active & (hit.pdf > F(0.0f)) & (hit.distance <= distance);
         if (!any(seen)) continue;
         const F selected = light_weight(keys, lights.key_count[i], path.time, path.origin, path.direction) /
-                           max(path.light_weight, F(1e-30f));
+                           max(path.light_weight, least_divisor<F>(1e-30f));
         const F weight = select(path.bsdf_pdf > F(0.0f), mis_weight(path.bsdf_pdf, selected * hit.pdf), F(1.0f));
         sum = select(seen, sum + hit.radiance * weight, sum);
     }
@@ -151,13 +156,13 @@ SHARED_FN Vec3<F> visible_lights(const SceneView& scene, const PathState<F>& pat
 /// What a ray that meets nothing sees: the environment (and, with R, lights at infinity are in visible_lights).
 /// @return radiance times throughput
 template <class F, unsigned R>
-SHARED_FN Vec3<F> shade_miss(const SceneView& scene, const PathState<F>& path, Mask<F> active) {
-    const LightSet& lights = scene.lights;
+SHARED_FN Vec3<F> shade_miss(const SceneFor<F>& scene, const PathState<F>& path, Mask<F> active) {
+    const LightSetOf<Real<F>>& lights = scene.lights;
     Vec3<F> L = splat<F>(lights.environment);
     if constexpr ((R & requirement::kEmitters) != 0) {
         if (lights.has_map) {
             L = environment_radiance(lights.map, path.direction);
-            const F selected = F(environment_weight(lights)) / max(path.light_weight, F(1e-30f));
+            const F selected = F(environment_weight(lights)) / max(path.light_weight, least_divisor<F>(1e-30f));
             const F weight = mis_weight(path.bsdf_pdf, selected * environment_pdf(lights.map, path.direction));
             L = L * select(path.bsdf_pdf > F(0.0f), weight, F(1.0f));
         }
@@ -196,22 +201,24 @@ SHARED_FN int find_in_cdf(const float* cdf, int count, float u) {
 /// What a bending triangle's density has to be multiplied with where its area is not that of the shutter's opening: it is
 /// chosen by the area that it had then.
 /// @param doubled_area  cross product of its edges now
-SHARED_FN float stretched_density(const EmissiveTriangle& triangle, Vec3f doubled_area) {
-    const Vec3f then = cross(triangle.edge1, triangle.edge2);
-    return sqrt(dot(then, then) / max(dot(doubled_area, doubled_area), 1e-30f));
+template <class T>
+SHARED_FN T stretched_density(const EmissiveTriangleOf<T>& triangle, Vec3<T> doubled_area) {
+    const Vec3<T> then = cross(triangle.edge1, triangle.edge2);
+    return sqrt(dot(then, then) / max(dot(doubled_area, doubled_area), least_divisor<T>(1e-30f)));
 }
 
 /// Replaces what a moving or textured emitter has of its own at (b1, b2).
-SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& triangle, float time, float b1, float b2,
-                               Vec3f& point, Vec3f& normal, Vec3f& emission) {
+template <class T>
+SHARED_FN void look_up_emitter(const SceneViewOf<T>& scene, const EmissiveTriangleOf<T>& triangle, T time, T b1, T b2,
+                               Vec3<T>& point, Vec3<T>& normal, Vec3<T>& emission) {
     const Instance& instance = scene.instances[triangle.instance];
     const Geometry& g = scene.geometries[instance.geometry];
     const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
-    const Affine at = transform_at(scene, triangle.instance, time);
-    const VertexKeys keys = vertex_keys(g, time);
-    Vec3f corners[3];
+    const AffineOf<T> at = transform_at(scene, triangle.instance, time);
+    const VertexKeys<T> keys = vertex_keys(g, time);
+    Vec3<T> corners[3];
     for (int c = 0; c < 3; ++c) {
-        const Vec3f q = position_at(g, keys, index[c]);
+        const Vec3<T> q = position_at(g, keys, index[c]);
         corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3],
                       at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
                       at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
@@ -220,22 +227,23 @@ SHARED_FN void look_up_emitter(const SceneView& scene, const EmissiveTriangle& t
     normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const TextureSlot& slot = scene.materials[instance.material].emissive_texture;
     if (slot.texture < 0) return;
-    const Vec4f t =
-        sample_texture<float>(scene.textures, slot.texture,
-                              apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
-    emission = emission * Vec3f{t.x, t.y, t.z};
+    const Vec4<T> t =
+        sample_texture<T>(scene.textures, slot.texture,
+                          apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
+    emission = emission * Vec3<T>{t.x, t.y, t.z};
 }
 
 /// A point on an emissive triangle, chosen in proportion to luminance * area.
 template <class F>
-SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F time, F choice, Vec2<F> u,
+SHARED_FN LightSample<F> sample_emitters(const SceneFor<F>& scene, Vec3<F> p, F time, F choice, Vec2<F> u,
                                          Mask<F> active) {
-    const LightSet& lights = scene.lights;
-    const EmissiveTriangle* chosen[kLanes<F>];
-    const float* rows[2][kLanes<F>];
+    using T = Real<F>;
+    const LightSetOf<Real<F>>& lights = scene.lights;
+    const EmissiveTriangleOf<T>* chosen[kLanes<F>];
+    const T* rows[2][kLanes<F>];
     unsigned varies = 0;
     for (int i = 0; i < kLanes<F>; ++i) {
-        chosen[i] = lights.triangles + find_in_cdf(lights.triangle_cdf, lights.triangle_count, lane(choice, i));
+        chosen[i] = lights.triangles + find_in_cdf(lights.triangle_cdf, lights.triangle_count, static_cast<float>(lane(choice, i)));
         rows[0][i] = &chosen[i]->corner.x;
         rows[1][i] = rows[0][i] + 8;
         varies |= chosen[i]->varies << i;
@@ -255,7 +263,7 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
     s.radiance = {second[1], second[2], second[3]};
     for (unsigned todo = varies & bits(active); todo; todo &= todo - 1) {
         const int i = lowest_bit(todo);
-        Vec3f at{}, facing{}, emission = chosen[i]->emission;
+        Vec3<T> at{}, facing{}, emission = chosen[i]->emission;
         look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i), at, facing, emission);
         if (scene.geometries[scene.instances[chosen[i]->instance].geometry].key_count > 1)
             set_lane(second[4], i, lane(second[4], i) * stretched_density(*chosen[i], facing));
@@ -264,11 +272,11 @@ SHARED_FN LightSample<F> sample_emitters(const SceneView& scene, Vec3<F> p, F ti
         set_vec(s.radiance, i, emission);
     }
     const Vec3<F> d = point - p;
-    const F distance2 = max(dot(d, d), F(1e-30f));
+    const F distance2 = max(dot(d, d), least_divisor<F>(1e-30f));
     s.distance = sqrt(distance2);
     s.direction = d * (F(1.0f) / s.distance);
-    const F cosine = abs(dot(normal, s.direction)) / max(length(normal), F(1e-30f));
-    s.pdf = second[4] * distance2 / max(cosine, F(1e-7f));
+    const F cosine = abs(dot(normal, s.direction)) / max(length(normal), least_divisor<F>(1e-30f));
+    s.pdf = second[4] * distance2 / max(cosine, least_divisor<F>(1e-7f));
     return s;
 }
 
@@ -280,18 +288,18 @@ struct Reservoir {
     /// Whether the new entry takes the place.
     SHARED_FN Mask<F> offer(F weight) {
         total = total + weight;
-        const F p = weight / max(total, F(1e-30f));
+        const F p = weight / max(total, least_divisor<F>(1e-30f));
         const Mask<F> take = (u < p) & (weight > F(0.0f));
-        u = min(select(take, u / max(p, F(1e-30f)), (u - p) / max(F(1.0f) - p, F(1e-30f))), F(kOneMinusEpsilon));
+        u = min(select(take, u / max(p, least_divisor<F>(1e-30f)), (u - p) / max(F(1.0f) - p, least_divisor<F>(1e-30f))), F(kOneMinusEpsilon));
         chosen = select(take, weight, chosen);
         return take;
     }
 };
 
 template <class F, unsigned R>
-SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F> n, F time, F choice, Vec2<F> u,
+SHARED_FN ChosenLight<F> choose_light(const SceneFor<F>& scene, Vec3<F> p, Vec3<F> n, F time, F choice, Vec2<F> u,
                                       Mask<F> active) {
-    const LightSet& lights = scene.lights;
+    const LightSetOf<Real<F>>& lights = scene.lights;
     ChosenLight<F> c;
     c.direction = n;
     c.radiance = {F(0.0f), F(0.0f), F(0.0f)};
@@ -308,7 +316,7 @@ SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F>
         c.delta = select(taken, Mask<F>(delta), c.delta);
     };
     for (int i = 0; i < lights.count; ++i) {
-        const Light* keys = lights.keys + lights.first[i];
+        const LightOf<Real<F>>* keys = lights.keys + lights.first[i];
         const LightSample<F> s = sample_light(keys, lights.key_count[i], time, p, u);
         const bool delta = (R & requirement::kEmitters) == 0 || i >= lights.visible_count;
         const F weight = delta ? luminance(s.radiance) * max(dot(n, s.direction), F(0.0f))
@@ -330,7 +338,7 @@ SHARED_FN ChosenLight<F> choose_light(const SceneView& scene, Vec3<F> p, Vec3<F>
         if (any(mesh)) take(mesh, sample_emitters(scene, p, time, reservoir.u, u, mesh), false);
     }
     c.total_weight = reservoir.total;
-    c.pdf = c.pdf * reservoir.chosen / max(reservoir.total, F(1e-30f));
+    c.pdf = c.pdf * reservoir.chosen / max(reservoir.total, least_divisor<F>(1e-30f));
     return c;
 }
 
@@ -347,7 +355,7 @@ struct VertexResult {
 };
 
 template <class F, unsigned R>
-SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& path, const Hit<F>& hit,
+SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>& path, const Hit<F>& hit,
                                     Mask<F> active) {
     const Settings& settings = scene.settings;
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
@@ -383,7 +391,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneView& scene, const PathState<F>& 
     F weight(1.0f);
     if constexpr ((R & requirement::kEmitters) != 0)
         weight = select(light.delta, F(1.0f), mis_weight(light.pdf, value.pdf));
-    const Vec3<F> direct = path.beta * value.f_cos * light.radiance * (weight / max(light.pdf, F(1e-30f)));
+    const Vec3<F> direct = path.beta * value.f_cos * light.radiance * (weight / max(light.pdf, least_divisor<F>(1e-30f)));
     result.shadow.origin = it.origin;
     result.shadow.direction = light.direction;
     // A light's own surface must not hide it.

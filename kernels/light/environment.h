@@ -42,6 +42,10 @@ SHARED_FN F atan2_turns(F y, F x) {
     return copy_sign(a, y);
 }
 
+#if !KADR_DEVICE_CODE
+SHARED_FN double atan2_turns(double y, double x) { return __builtin_atan2(y, x) * 0.159154943091895336; }
+#endif
+
 /// Image coordinates in [0, 1) x [0, 1] of a unit direction.
 template <class F>
 SHARED_FN Vec2<F> environment_uv(const EnvironmentMap& map, Vec3<F> direction) {
@@ -87,7 +91,7 @@ SHARED_FN F texel_pdf(const EnvironmentMap& map, Int<F> row, Int<F> column, F si
     const F p_column = gather(map.conditional + 1, at) - gather(map.conditional, at);
     const float per_steradian =
         static_cast<float>(map.width) * static_cast<float>(map.height) * (0.5f * kInvPi * kInvPi);
-    return p_row * p_column * F(per_steradian) / max(sine, F(1e-7f));
+    return p_row * p_column * F(per_steradian) / max(sine, least_divisor<F>(1e-7f));
 }
 
 /// Density of sample_environment, per steradian; positive wherever the radiance is.

@@ -36,24 +36,25 @@ struct LightAt {
     F cos_inner, cos_outer, inner_rad, outer_rad, range, radius, cos_angular_radius;
 };
 
-static_assert(sizeof(Light) % sizeof(float) == 0, "gathered as floats");
+static_assert(sizeof(Light) % sizeof(float) == 0 && sizeof(LightOf<double>) % sizeof(double) == 0, "gathered as numbers");
 
 /// Whether no ray can meet the light by chance: a parallel beam, a point.
-SHARED_FN bool is_delta(const Light& light) {
+template <class T>
+SHARED_FN bool is_delta(const LightOf<T>& light) {
     if (light.kind == LightKind::directional) return light.cos_angular_radius >= 1.0f;
     return light.kind != LightKind::area && light.radius <= 0.0f;
 }
 
 template <class F>
-SHARED_FN LightAt<F> light_uniform(const Light& l) {
+SHARED_FN LightAt<F> light_uniform(const LightOf<Real<F>>& l) {
     return {splat<F>(l.radiance), splat<F>(l.position), splat<F>(l.direction), splat<F>(l.axis_u),
             splat<F>(l.axis_v),   F(l.cos_inner),       F(l.cos_outer),        F(l.inner_rad),
             F(l.outer_rad),       F(l.range),           F(l.radius),           F(l.cos_angular_radius)};
 }
 
 template <class F>
-SHARED_FN LightAt<F> light_gathered(const Light* keys, Int<F> key) {
-    const Int<F> i = key * Int<F>(static_cast<int>(sizeof(Light) / sizeof(float)));
+SHARED_FN LightAt<F> light_gathered(const LightOf<Real<F>>* keys, Int<F> key) {
+    const Int<F> i = key * Int<F>(static_cast<int>(sizeof(LightOf<Real<F>>) / sizeof(Real<F>)));
     return {gather_vec3<F>(&keys->radiance.x, i),
             gather_vec3<F>(&keys->position.x, i),
             gather_vec3<F>(&keys->direction.x, i),
@@ -86,7 +87,7 @@ SHARED_FN LightAt<F> interpolate(const LightAt<F>& a, const LightAt<F>& b, F t) 
 
 /// The light at a time of the shutter in [0, 1]: its values between two keys, linearly.
 template <class F>
-SHARED_FN LightAt<F> light_at(const Light* keys, int count, F time) {
+SHARED_FN LightAt<F> light_at(const LightOf<Real<F>>* keys, int count, F time) {
     if (count == 1) return light_uniform<F>(keys[0]);
     const F position = time * F(static_cast<float>(count - 1));
     const Int<F> key = clamp_index<F>(truncate(position), 0, count - 2);
@@ -141,7 +142,7 @@ SHARED_FN F cone_factor(SpotFalloff falloff, const LightAt<F>& l, F cos_angle) {
 /// @param to_light  unit, from the point to the light's centre. A sphere's cone looks at the centre too, so that its
 ///                  radiance is constant over the disk that a point sees.
 template <class F>
-SHARED_FN F intensity_factor(const Light& light, const LightAt<F>& l, Vec3<F> to_light, F distance2) {
+SHARED_FN F intensity_factor(const LightOf<Real<F>>& light, const LightAt<F>& l, Vec3<F> to_light, F distance2) {
     const F window = range_window(distance2, l.range);
     if (light.kind != LightKind::spot) return window;
     return window * cone_factor(light.falloff, l, F(-dot(to_light, l.direction)));
@@ -166,11 +167,11 @@ SHARED_FN F cone_pdf(F one_minus_cos) {
 template <class F>
 SHARED_FN Vec3<F> sun_radiance(const LightAt<F>& l) {
     const F sin2 = (F(1.0f) - l.cos_angular_radius) * (F(1.0f) + l.cos_angular_radius);
-    return l.radiance * (F(kInvPi) / max(sin2, F(1e-12f)));
+    return l.radiance * (F(kInvPi) / max(sin2, least_divisor<F>(1e-12f)));
 }
 
 template <class F>
-SHARED_FN LightSample<F> sample_directional(const Light& light, const LightAt<F>& l, Vec2<F> u) {
+SHARED_FN LightSample<F> sample_directional(const LightOf<Real<F>>& light, const LightAt<F>& l, Vec2<F> u) {
     const Vec3<F> axis = -l.direction;
     if (is_delta(light)) return {axis, F(kFar), l.radiance, F(1.0f)};
     const F one_minus_cos = F(1.0f) - l.cos_angular_radius;
@@ -181,11 +182,11 @@ SHARED_FN LightSample<F> sample_directional(const Light& light, const LightAt<F>
 /// Squared distance that can be divided by.
 template <class F>
 SHARED_FN F safe_distance2(Vec3<F> v) {
-    return max(dot(v, v), F(1e-20f));
+    return max(dot(v, v), least_divisor<F>(1e-20f));
 }
 
 template <class F>
-SHARED_FN LightSample<F> sample_point(const Light& light, const LightAt<F>& l, Vec3<F> p, Vec2<F> u) {
+SHARED_FN LightSample<F> sample_point(const LightOf<Real<F>>& light, const LightAt<F>& l, Vec3<F> p, Vec2<F> u) {
     const Vec3<F> to_centre = l.position - p;
     const F distance2 = safe_distance2(to_centre);
     const F distance = sqrt(distance2);
@@ -221,7 +222,7 @@ SHARED_FN LightSample<F> sample_rectangle(const LightAt<F>& l, Vec3<F> p, Vec2<F
     const Vec3<F> direction = to_light * (F(1.0f) / distance);
     const F cos_light = -dot(direction, l.direction);
     const F projected = rectangle_area(l) * cos_light;
-    const Mask<F> lit = projected > F(1e-20f);
+    const Mask<F> lit = projected > least_divisor<F>(1e-20f);
     const F zero(0.0f);
     return {direction, distance, select(lit, l.radiance, Vec3<F>{zero, zero, zero}),
             select(lit, distance2 / select(lit, projected, F(1.0f)), zero)};
@@ -232,7 +233,7 @@ SHARED_FN LightSample<F> sample_rectangle(const LightAt<F>& l, Vec3<F> p, Vec2<F
 /// @param keys, count  the light over the shutter
 /// @param time         [0, 1]
 template <class F>
-SHARED_FN LightSample<F> sample_light(const Light* keys, int count, F time, Vec3<F> p, Vec2<F> u) {
+SHARED_FN LightSample<F> sample_light(const LightOf<Real<F>>* keys, int count, F time, Vec3<F> p, Vec2<F> u) {
     const LightAt<F> l = light_at<F>(keys, count, time);
     if (keys->kind == LightKind::directional) return sample_directional(*keys, l, u);
     if (keys->kind == LightKind::area) return sample_rectangle(l, p, u);
@@ -256,7 +257,7 @@ SHARED_FN LightHit<F> intersect_sun(const LightAt<F>& l, Vec3<F> direction) {
 }
 
 template <class F>
-SHARED_FN LightHit<F> intersect_sphere(const Light& light, const LightAt<F>& l, Vec3<F> origin, Vec3<F> direction) {
+SHARED_FN LightHit<F> intersect_sphere(const LightOf<Real<F>>& light, const LightAt<F>& l, Vec3<F> origin, Vec3<F> direction) {
     const Vec3<F> to_centre = l.position - origin;
     const F distance2 = safe_distance2(to_centre);
     const F along = dot(to_centre, direction);
@@ -272,14 +273,14 @@ SHARED_FN LightHit<F> intersect_sphere(const Light& light, const LightAt<F>& l, 
 template <class F>
 SHARED_FN LightHit<F> intersect_rectangle(const LightAt<F>& l, Vec3<F> origin, Vec3<F> direction) {
     const F cos_light = -dot(direction, l.direction);
-    const Mask<F> front = cos_light > F(1e-20f);
+    const Mask<F> front = cos_light > least_divisor<F>(1e-20f);
     const Vec3<F> to_centre = l.position - origin;
     const F distance = -dot(to_centre, l.direction) / select(front, cos_light, F(1.0f));
     const Vec3<F> at = direction * distance - to_centre;
     const Mask<F> inside =
         (abs(dot(at, l.axis_u)) <= dot(l.axis_u, l.axis_u)) & (abs(dot(at, l.axis_v)) <= dot(l.axis_v, l.axis_v));
     const F projected = rectangle_area(l) * cos_light;
-    const Mask<F> hit = front & inside & (distance > F(0.0f)) & (projected > F(1e-20f));
+    const Mask<F> hit = front & inside & (distance > F(0.0f)) & (projected > least_divisor<F>(1e-20f));
     return masked_hit<F>(hit, distance, l.radiance, distance * distance / select(hit, projected, F(1.0f)));
 }
 
@@ -287,7 +288,7 @@ SHARED_FN LightHit<F> intersect_rectangle(const LightAt<F>& l, Vec3<F> origin, V
 ///
 /// @param direction  unit length
 template <class F>
-SHARED_FN LightHit<F> intersect_light(const Light* keys, int count, F time, Vec3<F> origin, Vec3<F> direction) {
+SHARED_FN LightHit<F> intersect_light(const LightOf<Real<F>>* keys, int count, F time, Vec3<F> origin, Vec3<F> direction) {
     const F zero(0.0f);
     if (is_delta(*keys)) return {F(kFar), {zero, zero, zero}, zero};
     const LightAt<F> l = light_at<F>(keys, count, time);
@@ -300,7 +301,7 @@ template <class F>
 SHARED_FN F rectangle_weight(const LightAt<F>& l, Vec3<F> p) {
     const Vec3<F> from_centre = p - l.position;
     const F height = dot(from_centre, l.direction);
-    const F uu = max(dot(l.axis_u, l.axis_u), F(1e-20f)), vv = max(dot(l.axis_v, l.axis_v), F(1e-20f));
+    const F uu = max(dot(l.axis_u, l.axis_u), least_divisor<F>(1e-20f)), vv = max(dot(l.axis_v, l.axis_v), least_divisor<F>(1e-20f));
     const F a = clamp(dot(from_centre, l.axis_u) / uu, F(-1.0f), F(1.0f));
     const F b = clamp(dot(from_centre, l.axis_v) / vv, F(-1.0f), F(1.0f));
     const Vec3<F> nearest = from_centre - l.axis_u * a - l.axis_v * b;
@@ -316,8 +317,8 @@ SHARED_FN F rectangle_weight(const LightAt<F>& l, Vec3<F> p) {
 ///
 /// @param n  unit shading normal, on the side that is lit
 template <class F>
-SHARED_FN F light_weight(const Light* keys, int count, F time, Vec3<F> p, Vec3<F> n) {
-    const Light& light = *keys;
+SHARED_FN F light_weight(const LightOf<Real<F>>* keys, int count, F time, Vec3<F> p, Vec3<F> n) {
+    const LightOf<Real<F>>& light = *keys;
     const LightAt<F> l = light_at<F>(keys, count, time);
     const F zero(0.0f);
     if (light.kind == LightKind::area) return rectangle_weight(l, p);

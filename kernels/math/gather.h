@@ -7,6 +7,7 @@ namespace kadr::kernels {
 
 /// table[index] of every lane. All indices must be inside the table, those of idle lanes too.
 SHARED_FN float gather(const float* table, int index) { return table[index]; }
+SHARED_FN double gather(const double* table, int index) { return table[index]; }
 
 #if !KADR_DEVICE_CODE
 template <int N>
@@ -20,9 +21,9 @@ SHARED_FN Wide<N> gather(const float* table, WideInt<N> index) {
 }
 #endif
 
-/// Three consecutive floats from table[index].
-template <class F>
-SHARED_FN Vec3<F> gather_vec3(const float* table, Int<F> index) {
+/// Three consecutive numbers from table[index].
+template <class F, class T>
+SHARED_FN Vec3<F> gather_vec3(const T* table, Int<F> index) {
     return {gather(table, index), gather(table + 1, index), gather(table + 2, index)};
 }
 

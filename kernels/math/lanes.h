@@ -75,6 +75,7 @@ struct Wide {
 
 template <int N> struct Traits<Wide<N>> {
     static constexpr int kLanes = N;
+    using Real = float;
     using Mask = WideMask<N>;
     using Int = WideInt<N>;
     using UInt = WideUInt<N>;

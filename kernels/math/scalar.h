@@ -1,4 +1,5 @@
 // One lane: what kernels do with a float, an int, an unsigned and a bool where F is float.
+// kernels/math/double.h has what they do with a double.
 #pragma once
 
 #include "kernels/math/platform.h"
@@ -8,11 +9,14 @@ namespace kadr::kernels {
 template <class F> struct Traits;
 template <> struct Traits<float> {
     static constexpr int kLanes = 1;
+    using Real = float;
     using Mask = bool;
     using Int = int;
     using UInt = unsigned;
 };
 template <class F> inline constexpr int kLanes = Traits<F>::kLanes;
+/// What one lane of F holds: float; double where F is double.
+template <class F> using Real = typename Traits<F>::Real;
 template <class F> using Mask = typename Traits<F>::Mask;
 template <class F> using Int = typename Traits<F>::Int;
 template <class F> using UInt = typename Traits<F>::UInt;

@@ -1,6 +1,6 @@
 // Values over several lanes. Kernels are templates over F: `float` (the GPU, the portable form) or `Wide<N>` (N lanes by
 // compiler vector extensions). Both forms do the same IEEE operations in the same order, so they agree to the last bit
-// wherever -ffp-contract=off holds.
+// wherever -ffp-contract=off holds. `double` is the third form: what the other two are held against (device/exact).
 //
 // Control flow is by masks: Mask<F>, select(mask, a, b), any(mask).
 #pragma once
@@ -8,6 +8,7 @@
 #include "kernels/math/scalar.h"
 #include "kernels/math/vec.h"
 #if !KADR_DEVICE_CODE
+#include "kernels/math/double.h"
 #include "kernels/math/lanes.h"
 #endif
 
@@ -24,8 +25,8 @@ template <class F> struct Memory {
 };
 
 /// Eight values from each of kLanes<F> places: out[k] of lane i is rows[i][k].
-template <class F>
-SHARED_FN void load_rows(const float* const* rows, F* out) {
+template <class F, class T>
+SHARED_FN void load_rows(const T* const* rows, F* out) {
 #if defined(__AVX__) && !KADR_DEVICE_CODE
     if constexpr (kLanes<F> == 8) {  // eight loads and an 8x8 transposition
         __m256 r[8], t[8];
@@ -48,7 +49,7 @@ SHARED_FN void load_rows(const float* const* rows, F* out) {
     }
 #endif
     for (int k = 0; k < 8; ++k)
-        for (int i = 0; i < kLanes<F>; ++i) set_lane(out[k], i, rows[i][k]);
+        for (int i = 0; i < kLanes<F>; ++i) set_lane(out[k], i, static_cast<Real<F>>(rows[i][k]));
 }
 
 // ------------------------------------------------------------------------------------------------------ functions
@@ -67,7 +68,14 @@ template <class F> SHARED_FN Vec3<F> normalize(Vec3<F> a) { return a * (F(1.0f) 
 /// Finite: neither infinite nor NaN.
 template <class F> SHARED_FN Mask<F> is_finite(F a) { return abs(a) < F(3.0e38f); }
 template <class F> SHARED_FN Mask<F> is_finite(Vec3<F> a) { return is_finite(abs(a.x) + abs(a.y) + abs(a.z)); }
-template <class F> SHARED_FN Vec3<F> splat(Vec3f a) { return {F(a.x), F(a.y), F(a.z)}; }
+template <class F, class T> SHARED_FN Vec3<F> splat(Vec3<T> a) { return {F(a.x), F(a.y), F(a.z)}; }
+
+/// What keeps a divisor off zero, or an overflow away: `in_float` where lanes hold floats, far below in double.
+template <class F>
+SHARED_FN F least_divisor(float in_float) {
+    if constexpr (sizeof(Real<F>) == 8) return F(1e-290);
+    return F(in_float);
+}
 
 inline constexpr float kPi = 3.14159265358979f;
 inline constexpr float kInvPi = 0.318309886183791f;

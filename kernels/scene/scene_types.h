@@ -1,4 +1,7 @@
 // What a renderer on any device knows of a scene: plain data, no ownership. Pointers are device addresses.
+//
+// Places and directions in the world come in float, and in double for the reference (device/exact): T says which. Meshes,
+// materials and images are float for both, since that is what files hold.
 #pragma once
 
 #include "kernels/math/vec.h"
@@ -80,38 +83,44 @@ enum class LightKind : unsigned char { directional, point, spot, area };
 enum class SpotFalloff : unsigned char { gltf, linear, blender };
 
 /// A light at one time of the shutter.
-struct Light {
-    Vec3f radiance{0, 0, 0};  ///< colour * strength: lux (directional), candela (point, spot), nit (area)
+template <class T>
+struct LightOf {
+    Vec3<T> radiance{0, 0, 0};  ///< colour * strength: lux (directional), candela (point, spot), nit (area)
     LightKind kind = LightKind::point;
     SpotFalloff falloff = SpotFalloff::gltf;
-    Vec3f position{0, 0, 0};    ///< relative to the render origin
-    Vec3f direction{0, 0, -1};  ///< the way the light travels (area: the side that emits)
-    Vec3f axis_u{1, 0, 0};      ///< area: half of the rectangle's first side; second is axis_v
-    Vec3f axis_v{0, 1, 0};
-    float cos_inner = 1, cos_outer = 0;
-    float inner_rad = 0, outer_rad = 0;
-    float range = 0;               ///< metres; 0: infinite
-    float radius = 0;              ///< point and spot: sphere of this radius; 0: a point
-    float cos_angular_radius = 1;  ///< directional: 1 is a parallel beam
+    Vec3<T> position{0, 0, 0};    ///< relative to the render origin
+    Vec3<T> direction{0, 0, -1};  ///< the way the light travels (area: the side that emits)
+    Vec3<T> axis_u{1, 0, 0};      ///< area: half of the rectangle's first side; second is axis_v
+    Vec3<T> axis_v{0, 1, 0};
+    T cos_inner = 1, cos_outer = 0;
+    T inner_rad = 0, outer_rad = 0;
+    T range = 0;               ///< metres; 0: infinite
+    T radius = 0;              ///< point and spot: sphere of this radius; 0: a point
+    T cos_angular_radius = 1;  ///< directional: 1 is a parallel beam
 };
+using Light = LightOf<float>;
 
 /// A camera at one time of the shutter.
-struct CameraKey {
-    Vec3f position;        ///< relative to the render origin
-    float rotation[4];     ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
-    float tan_half_width;  ///< perspective: half the image's width at unit distance; orthographic: half width in metres
-    float tan_half_height;
-    float lens_radius;     ///< metres; 0: pinhole
-    float focus_distance;  ///< metres along the view axis
+template <class T>
+struct CameraKeyOf {
+    Vec3<T> position;  ///< relative to the render origin
+    T rotation[4];     ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
+    T tan_half_width;  ///< perspective: half the image's width at unit distance; orthographic: half width in metres
+    T tan_half_height;
+    T lens_radius;     ///< metres; 0: pinhole
+    T focus_distance;  ///< metres along the view axis
 };
+using CameraKey = CameraKeyOf<float>;
 
-struct Camera {
-    const CameraKey* keys;  ///< evenly spaced over the shutter
+template <class T>
+struct CameraOf {
+    const CameraKeyOf<T>* keys;  ///< evenly spaced over the shutter
     int key_count;
     bool orthographic;
-    int blades;                 ///< 0: round aperture
-    float near_clip, far_clip;  ///< metres along the view axis; 0 and infinity when the camera has none
+    int blades;             ///< 0: round aperture
+    T near_clip, far_clip;  ///< metres along the view axis; 0 and infinity when the camera has none
 };
+using Camera = CameraOf<float>;
 
 enum class FilterKind : unsigned char { box, gaussian, mitchell, blackman_harris };
 enum class IntegratorKind : unsigned char { direct, path };

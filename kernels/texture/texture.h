@@ -50,11 +50,12 @@ SHARED_FN Vec4f fetch_texel(const Texture& t, int x, int y) {
 }
 
 /// A coordinate brought into [0, 1]; 0 for what is not finite.
-SHARED_FN float wrap_coordinate(Wrap wrap, float u) {
+template <class T>
+SHARED_FN T wrap_coordinate(Wrap wrap, T u) {
     if (!(abs(u) < 1e9f)) return 0.0f;
     if (wrap == Wrap::clamp_to_edge) return saturate(u);
     if (wrap == Wrap::repeat) return u - floor(u);
-    const float m = u - 2.0f * floor(u * 0.5f);
+    const T m = u - 2.0f * floor(u * 0.5f);
     return m > 1.0f ? 2.0f - m : m;
 }
 
@@ -65,16 +66,18 @@ SHARED_FN int wrap_index(Wrap wrap, int i, int size) {
     return i;
 }
 
-SHARED_FN float bilinear(float a, float b, float c, float d, float fx, float fy) {
-    return lerp(lerp(a, b, fx), lerp(c, d, fx), fy);
+template <class T>
+SHARED_FN T bilinear(float a, float b, float c, float d, T fx, T fy) {
+    return lerp<T>(lerp<T>(a, b, fx), lerp<T>(c, d, fx), fy);
 }
 
 /// Interpolated in linear light: texels are decoded first.
-SHARED_FN Vec4f sample_bilinear(const Texture& t, float u, float v) {
-    const float x = u * static_cast<float>(t.width) - 0.5f;
-    const float y = v * static_cast<float>(t.height) - 0.5f;
-    const float left = floor(x), top = floor(y);
-    const float fx = x - left, fy = y - top;
+template <class T>
+SHARED_FN Vec4<T> sample_bilinear(const Texture& t, T u, T v) {
+    const T x = u * static_cast<T>(t.width) - 0.5f;
+    const T y = v * static_cast<T>(t.height) - 0.5f;
+    const T left = floor(x), top = floor(y);
+    const T fx = x - left, fy = y - top;
     const int x0 = wrap_index(t.wrap_s, static_cast<int>(left), t.width);
     const int x1 = wrap_index(t.wrap_s, static_cast<int>(left) + 1, t.width);
     const int y0 = wrap_index(t.wrap_t, static_cast<int>(top), t.height);
@@ -85,17 +88,21 @@ SHARED_FN Vec4f sample_bilinear(const Texture& t, float u, float v) {
             bilinear(a.z, b.z, c.z, d.z, fx, fy), bilinear(a.w, b.w, c.w, d.w, fx, fy)};
 }
 
-SHARED_FN Vec4f sample_nearest(const Texture& t, float u, float v) {
-    const int x = static_cast<int>(u * static_cast<float>(t.width));
-    const int y = static_cast<int>(v * static_cast<float>(t.height));
+template <class T>
+SHARED_FN Vec4f sample_nearest(const Texture& t, T u, T v) {
+    const int x = static_cast<int>(u * static_cast<T>(t.width));
+    const int y = static_cast<int>(v * static_cast<T>(t.height));
     return fetch_texel(t, x < t.width ? x : t.width - 1, y < t.height ? y : t.height - 1);
 }
 
 /// One texture at one place.
-SHARED_FN Vec4f sample_texture_scalar(const Texture& t, float u, float v) {
-    const float wrapped_u = wrap_coordinate(t.wrap_s, u);
-    const float wrapped_v = wrap_coordinate(t.wrap_t, v);
-    return t.nearest ? sample_nearest(t, wrapped_u, wrapped_v) : sample_bilinear(t, wrapped_u, wrapped_v);
+template <class T>
+SHARED_FN Vec4<T> sample_texture_scalar(const Texture& t, T u, T v) {
+    const T wrapped_u = wrap_coordinate(t.wrap_s, u);
+    const T wrapped_v = wrap_coordinate(t.wrap_t, v);
+    if (!t.nearest) return sample_bilinear(t, wrapped_u, wrapped_v);
+    const Vec4f texel = sample_nearest(t, wrapped_u, wrapped_v);
+    return {texel.x, texel.y, texel.z, texel.w};
 }
 
 /// Colour and alpha of each lane's texture.
@@ -108,7 +115,7 @@ SHARED_FN Vec4<F> sample_texture(const Texture* textures, Int<F> texture, Vec2<F
     for (int i = 0; i < kLanes<F>; ++i) {
         const int index = lane(texture, i);
         if (index < 0 || !lane(active, i)) continue;
-        const Vec4f value = sample_texture_scalar(textures[index], lane(uv.x, i), lane(uv.y, i));
+        const Vec4<Real<F>> value = sample_texture_scalar(textures[index], lane(uv.x, i), lane(uv.y, i));
         set_lane(result.x, i, value.x);
         set_lane(result.y, i, value.y);
         set_lane(result.z, i, value.z);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/probe.h"
 #include "film/film.h"
 #include "frame/snapshot.h"
 
@@ -46,7 +47,7 @@ struct BuildSettings {
     bool operator==(const BuildSettings&) const = default;
 };
 
-/// A renderer on some hardware: three calls and no back-end type across them.
+/// A renderer on some hardware: three calls, and no back-end type across them.
 class Device {
 public:
     virtual ~Device() = default;
@@ -57,6 +58,8 @@ public:
     virtual void set_frame(const SceneSnapshot& snapshot) = 0;
     virtual void render(const Pass& pass, Film& film) = 0;  ///< adds to the film
     virtual DeviceStatistics statistics() const = 0;
+    /// Single rays, of devices that answer them; else null. Lives as long as the device.
+    virtual Probe* probe() { return nullptr; }
 };
 
 struct DeviceRequest {

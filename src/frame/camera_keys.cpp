@@ -231,13 +231,6 @@ double pixels_between(const CameraState& a, const CameraState& b, int image_heig
     return (turned + moved / b.subject_distance + lens + focus) * half_height / b.tan_half_height + zoomed;
 }
 
-kernels::CameraKey to_key(const CameraState& camera, const glm::dvec3& origin) {
-    const glm::vec3 p(camera.position - origin);
-    const glm::quat q(camera.rotation);
-    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<float>(camera.tan_half_width), static_cast<float>(camera.tan_half_height),
-            static_cast<float>(camera.lens_radius), static_cast<float>(camera.focus_distance)};
-}
-
 /// Error of evenly spaced states at a quarter, the half and three quarters of every step, where the fit looks at it, and
 /// where tracks have keys: a path that has a corner there strays farthest in it.
 /// @param corners  in (0, 1)
@@ -294,6 +287,16 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
 
 }  // namespace
 
+template <class T>
+kernels::CameraKeyOf<T> to_key(const CameraState& camera, const glm::dvec3& origin) {
+    const glm::vec<3, T> p(camera.position - origin);
+    const glm::qua<T> q(camera.rotation);
+    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<T>(camera.tan_half_width), static_cast<T>(camera.tan_half_height),
+            static_cast<T>(camera.lens_radius), static_cast<T>(camera.focus_distance)};
+}
+template kernels::CameraKeyOf<float> to_key(const CameraState&, const glm::dvec3&);
+template kernels::CameraKeyOf<double> to_key(const CameraState&, const glm::dvec3&);
+
 CameraState camera_at(const BoundShot& shot, double time_s) {
     CameraState camera = shot.bindings().camera_node >= 0 ? placed_by_node(shot, time_s) : placed_by_shot(shot, time_s);
     apply_dolly(camera, shot, time_s);
@@ -325,7 +328,7 @@ CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const
     }
     for (CameraState& state : states) {
         if (&state != &states.front() && glm::dot((&state)[-1].rotation, state.rotation) < 0) state.rotation = -state.rotation;
-        fit.keys.push_back(to_key(state, origin));
+        fit.keys.push_back(to_key<float>(state, origin));
     }
     return fit;
 }

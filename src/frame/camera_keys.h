@@ -26,6 +26,10 @@ struct CameraState {
 /// @throws InputError  where the camera stands on what it looks at, or focuses behind itself
 CameraState camera_at(const BoundShot& shot, double time_s);
 
+/// As kernels read it, relative to a render origin. T: float or double.
+template <class T>
+kernels::CameraKeyOf<T> to_key(const CameraState& camera, const glm::dvec3& origin);
+
 struct CameraFit {
     std::vector<kernels::CameraKey> keys;  ///< evenly spaced, relative to the render origin
     double error_px = 0;                   ///< how far the subject's image strays from where the true camera has it, at most

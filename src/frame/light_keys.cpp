@@ -20,7 +20,29 @@ namespace {
 
 constexpr int kMostLightSegments = 32;
 
-kernels::Vec3f to_float(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+using ExactLight = kernels::LightOf<double>;
+
+kernels::Vec3<double> to_vec(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+kernels::Vec3f to_float(const kernels::Vec3<double>& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+kernels::Light to_float(const ExactLight& exact) {
+    kernels::Light light{};
+    light.radiance = to_float(exact.radiance);
+    light.kind = exact.kind;
+    light.falloff = exact.falloff;
+    light.position = to_float(exact.position);
+    light.direction = to_float(exact.direction);
+    light.axis_u = to_float(exact.axis_u);
+    light.axis_v = to_float(exact.axis_v);
+    light.cos_inner = static_cast<float>(exact.cos_inner);
+    light.cos_outer = static_cast<float>(exact.cos_outer);
+    light.inner_rad = static_cast<float>(exact.inner_rad);
+    light.outer_rad = static_cast<float>(exact.outer_rad);
+    light.range = static_cast<float>(exact.range);
+    light.radius = static_cast<float>(exact.radius);
+    light.cos_angular_radius = static_cast<float>(exact.cos_angular_radius);
+    return light;
+}
 
 glm::dvec3 direction_of(const BoundShot& shot, const LightSpec& spec, const glm::dvec3& position, double time_s) {
     glm::dvec3 direction = evaluate(spec.direction, time_s);
@@ -35,39 +57,39 @@ glm::dvec3 direction_of(const BoundShot& shot, const LightSpec& spec, const glm:
                                 spec.look_at ? "expected look_at to be another point than position" : "expected a direction other than [0, 0, 0]"));
 }
 
-void set_cone(kernels::Light& light, double inner_rad, double outer_rad) {
+void set_cone(ExactLight& light, double inner_rad, double outer_rad) {
     // What the shot says was checked; clips may drive one angle beyond the other, and it is held there as at any limit.
     inner_rad = std::min(inner_rad, outer_rad);
-    light.inner_rad = static_cast<float>(inner_rad);
-    light.outer_rad = static_cast<float>(outer_rad);
-    light.cos_inner = static_cast<float>(std::cos(inner_rad));
-    light.cos_outer = static_cast<float>(std::cos(outer_rad));
+    light.inner_rad = inner_rad;
+    light.outer_rad = outer_rad;
+    light.cos_inner = std::cos(inner_rad);
+    light.cos_outer = std::cos(outer_rad);
 }
 
-void set_rectangle(kernels::Light& light, const glm::dvec3& direction, const glm::dvec2& size_m) {
+void set_rectangle(ExactLight& light, const glm::dvec3& direction, const glm::dvec2& size_m) {
     const ViewAxes axes = view_axes(direction, {0, 1, 0});
-    light.axis_u = to_float(0.5 * size_m.x * axes.right);
-    light.axis_v = to_float(0.5 * size_m.y * axes.up);
+    light.axis_u = to_vec(0.5 * size_m.x * axes.right);
+    light.axis_v = to_vec(0.5 * size_m.y * axes.up);
 }
 
-kernels::Light light_at(const BoundShot& shot, const LightSpec& spec, double time_s, const glm::dvec3& origin) {
-    kernels::Light light{};
+ExactLight light_at(const BoundShot& shot, const LightSpec& spec, double time_s, const glm::dvec3& origin) {
+    ExactLight light{};
     const glm::dvec3 position = evaluate(spec.position, time_s);
     const glm::dvec3 direction = direction_of(shot, spec, position, time_s);
-    light.radiance = to_float(evaluate(spec.color, time_s) * evaluate(spec.strength, time_s));
+    light.radiance = to_vec(evaluate(spec.color, time_s) * evaluate(spec.strength, time_s));
     light.kind = static_cast<kernels::LightKind>(spec.kind);
     light.falloff = static_cast<kernels::SpotFalloff>(spec.falloff);
-    light.direction = to_float(direction);
+    light.direction = to_vec(direction);
     if (spec.kind == LightKind::directional) {
-        light.cos_angular_radius = static_cast<float>(std::cos(0.5 * evaluate(spec.angular_diameter_rad, time_s)));
+        light.cos_angular_radius = std::cos(0.5 * evaluate(spec.angular_diameter_rad, time_s));
         return light;
     }
-    light.position = to_float(position - origin);
-    light.range = static_cast<float>(evaluate(spec.range_m, time_s));
+    light.position = to_vec(position - origin);
+    light.range = evaluate(spec.range_m, time_s);
     if (spec.kind == LightKind::area) {
         set_rectangle(light, direction, evaluate(spec.size_m, time_s));
     } else {
-        light.radius = static_cast<float>(evaluate(spec.radius_m, time_s));
+        light.radius = evaluate(spec.radius_m, time_s);
         set_cone(light, evaluate(spec.inner_rad, time_s), evaluate(spec.outer_rad, time_s));
     }
     return light;
@@ -95,20 +117,20 @@ SceneLight source_at(const BoundShot& shot, const LightSeed& seed, double time_s
 }
 
 /// KHR_lights_punctual: along the node's -z; scale has no meaning for a light.
-kernels::Light light_at(const BoundShot& shot, const LightSeed& seed, double time_s, const glm::dvec3& origin) {
+ExactLight light_at(const BoundShot& shot, const LightSeed& seed, double time_s, const glm::dvec3& origin) {
     const SceneLight source = source_at(shot, seed, time_s);
     const glm::dmat4 world = shot.bindings().node_transform(seed.node, seed.copy, time_s);
     const double length = glm::length(glm::dvec3(world[2]));
     if (!is_finite(world))
         throw InputError(fmt::format("the node of light '{}' has a transform that is not finite at {} s", source.name, format_number(time_s)),
                          "expected finite translations and scales");
-    kernels::Light light{};
-    light.radiance = to_float(source.color * source.intensity);
+    ExactLight light{};
+    light.radiance = to_vec(source.color * source.intensity);
     light.kind = source.kind;
-    light.direction = to_float(length > 0 ? -glm::dvec3(world[2]) / length : glm::dvec3(0, 0, -1));
+    light.direction = to_vec(length > 0 ? -glm::dvec3(world[2]) / length : glm::dvec3(0, 0, -1));
     if (source.kind == kernels::LightKind::directional) return light;
-    light.position = to_float(glm::dvec3(world[3]) - origin);
-    light.range = static_cast<float>(source.range_m);
+    light.position = to_vec(glm::dvec3(world[3]) - origin);
+    light.range = source.range_m;
     set_cone(light, source.inner_rad, source.outer_rad);
     return light;
 }
@@ -241,13 +263,23 @@ std::vector<double> add_light_keys(const BoundShot& shot, double open_s, double 
     for (const LightSpec& spec : shot.shot().lights)
         if (is_on(spec.visible, middle_s))
             append(missed, add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance_m,
-                                    [&](double time) { return light_at(shot, spec, time, origin); }, snapshot));
+                                    [&](double time) { return to_float(light_at(shot, spec, time, origin)); }, snapshot));
     const VisibilityRig::States states = shot.bindings().visibility.at(middle_s);
     for (const LightSeed& seed : shot.bindings().lights)
         if (states.visible(seed.node, seed.clip_offset_s()))
             append(missed, add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
-                                    [&](double time) { return light_at(shot, seed, time, origin); }, snapshot));
+                                    [&](double time) { return to_float(light_at(shot, seed, time, origin)); }, snapshot));
     return missed;
+}
+
+std::vector<kernels::LightOf<double>> lights_at(const BoundShot& shot, double time_s, double switch_s, const glm::dvec3& origin) {
+    std::vector<ExactLight> lights;
+    for (const LightSpec& spec : shot.shot().lights)
+        if (is_on(spec.visible, switch_s)) lights.push_back(light_at(shot, spec, time_s, origin));
+    const VisibilityRig::States states = shot.bindings().visibility.at(switch_s);
+    for (const LightSeed& seed : shot.bindings().lights)
+        if (states.visible(seed.node, seed.clip_offset_s())) lights.push_back(light_at(shot, seed, time_s, origin));
+    return lights;
 }
 
 std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s) {

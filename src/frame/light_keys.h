@@ -16,6 +16,10 @@ inline constexpr double kLightTolerance = 1e-3;
 /// @throws InputError  where a light has no direction
 std::vector<double> add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot);
 
+/// The same lights in the same order at one time, unrounded. @param switch_s  when lights are looked at for being on: the
+/// middle of the part
+std::vector<kernels::LightOf<double>> lights_at(const BoundShot& shot, double time_s, double switch_s, const glm::dvec3& origin);
+
 std::vector<double> light_discontinuities(const BoundShot& shot, double begin_s, double end_s);
 
 }  // namespace kadr

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "device/varied_scenes.h"
-#include "gpu/embree_tracer.h"
+#include "device/embree/embree_tracer.h"
 #include "kernels/camera/filter_table.h"
 #include "kernels/gpu/entry_points.h"
 #include "kernels/gpu/render_pixel.h"
@@ -73,7 +73,7 @@ void run(const kernels::LaunchParams& params, const EmbreeScene& scene, int grid
     for (int y = params.y0; y < params.y0 + grid_height; ++y)
         for (int x = params.x0; x < params.x0 + grid_width; ++x)
             if (is_wanted(params, x, y))
-                kernels::PixelDriver<R, kIntegrator, EmbreeTracer>(params, tracer, x, y).render(*params.counters);
+                kernels::PixelDriver<float, R, kIntegrator, EmbreeTracer>(params, tracer, x, y).render(*params.counters);
 }
 
 /// Launches the kernel of exactly this set. The grid is larger than the rectangle, as a grid of blocks is.
@@ -265,7 +265,7 @@ TEST(PixelDriverAlone, DropsSamplesWhoseRayIsLost) {
     params.film = film.view(0, false);
     params.sample_count = 9;
     LossyTracer tracer;
-    kernels::PixelDriver<0, IntegratorKind::path, LossyTracer>(params, tracer, 0, 0).render(counters);
+    kernels::PixelDriver<float, 0, IntegratorKind::path, LossyTracer>(params, tracer, 0, 0).render(counters);
     EXPECT_EQ(counters.rays, 9u);
     EXPECT_EQ(counters.samples, 6u);
     EXPECT_EQ(counters.dropped, 3u);

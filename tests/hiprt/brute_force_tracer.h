@@ -121,7 +121,7 @@ private:
             kernels::Vec3f p[3];
             corners(input, i, t, time, p);
             kernels::TriangleHit hit;
-            if (!kernels::intersect_triangle(to_float(o), to_float(d), p, 0, max_distance(), hit)) continue;
+            if (!kernels::intersect_triangle(to_float(o), to_float(d), p, 0.0f, max_distance(), hit)) continue;
             if (boxes && !in_box(input.list, t, o + d * static_cast<double>(hit.distance))) continue;
             if (input.geometry_type != hiprt::kInvalidValue && !stops(i, t, hit, p, to_float(d), coverage)) continue;
             if (found(t, hit)) return;

@@ -30,7 +30,7 @@ double trace(const FakeHiprt& hiprt, const kernels::LaunchParams& params) {
         for (int x = params.x0; x < params.x1; ++x) {
             if (!kernels::is_wanted(params, x, y)) continue;
             BruteForceTracer tracer(hiprt, params, kIntegrator == IntegratorKind::direct);
-            kernels::PixelDriver<kSet<kIntegrator>, kIntegrator, BruteForceTracer>(params, tracer, x, y)
+            kernels::PixelDriver<float, kSet<kIntegrator>, kIntegrator, BruteForceTracer>(params, tracer, x, y)
                 .render(counters);
         }
     params.counters->rays += counters.rays;

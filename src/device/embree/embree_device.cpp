@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -14,7 +15,9 @@
 
 #include "base/error.h"
 #include "device/embree/embree_scene.h"
+#include "device/embree/embree_tracer.h"
 #include "device/embree/tile_job.h"
+#include "device/tables/scene_probe.h"
 #include "kernels/camera/filter_table.h"
 #include "kernels/sampler/sobol.h"
 
@@ -52,7 +55,7 @@ struct Worker {
     std::uint64_t samples = 0;
 };
 
-class EmbreeDevice final : public Device {
+class EmbreeDevice final : public Device, private Probe {
 public:
     EmbreeDevice(int threads, int width)
         : width_(width),
@@ -132,8 +135,35 @@ public:
     }
 
     DeviceStatistics statistics() const override { return statistics_; }
+    Probe* probe() override { return this; }
 
 private:
+    std::vector<SurfaceHit> look(std::span<const kernels::Vec2f> film_px, double time) override {
+        std::vector<SurfaceHit> hits(film_px.size());
+        for_each_ray(hits.size(), [&](std::size_t i) {
+            hits[i] = SceneProbe<float>(scene_->view()).look(EmbreeTracer(*scene_, true), film_px[i], time);
+        });
+        return hits;
+    }
+
+    std::vector<char> occluded(std::span<const SurfaceRay> rays, double time) override {
+        std::vector<char> answers(rays.size());
+        for_each_ray(rays.size(), [&](std::size_t i) {
+            answers[i] = SceneProbe<float>(scene_->view()).occluded(EmbreeTracer(*scene_, true), rays[i], time);
+        });
+        return answers;
+    }
+
+    template <class Ask>
+    void for_each_ray(std::size_t count, const Ask& ask) {
+        arena_.execute([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
+                const FlushDenormals flush;
+                for (std::size_t i = range.begin(); i < range.end(); ++i) ask(i);
+            });
+        });
+    }
+
     void render_tile(const Pass& pass, int x0, int y0, Film& film, Worker& worker) const {
         TileJob job;
         job.scene = &scene_->view();

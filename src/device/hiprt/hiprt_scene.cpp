@@ -176,10 +176,10 @@ void HiprtScene::set_shared(const SceneSnapshot& snapshot) {
 }
 
 void HiprtScene::set_lights(const SceneSnapshot& snapshot) {
-    lights_.set(snapshot);
+    lights_.set(snapshot.light_keys, snapshot.lights);
     lights_.fill(view_.lights);
     emitters_.fill(view_.lights);
-    fill_environment(snapshot, environment_, view_.lights);
+    fill_environment(snapshot.environment, environment_, view_.lights);
     light_keys_.set(memory_, uploads_, lights_.keys());
     light_first_.set(memory_, uploads_, lights_.first());
     light_key_count_.set(memory_, uploads_, lights_.key_count());

@@ -10,8 +10,9 @@
 namespace kadr {
 namespace {
 
-kernels::Vec3f to_float(const glm::dvec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+template <class T>
+kernels::Vec3<T> rounded(const glm::dvec3& v) {
+    return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
 }
 
 /// Mean luminance of a texture, as an estimate of what a textured emitter sends out.
@@ -32,7 +33,8 @@ float average_luminance(const kernels::Texture* textures, const kernels::Texture
 bool emits(const kernels::Material& m) { return !m.unlit && kernels::luminance(m.emission) > 0; }
 
 /// A vertex of an instance in the world, relative to the render origin.
-glm::dvec3 world_vertex(const kernels::Affine& at, const kernels::Vec3f& v) {
+template <class T>
+glm::dvec3 world_vertex(const kernels::AffineOf<T>& at, const kernels::Vec3f& v) {
     const glm::dvec3 p(v.x, v.y, v.z);
     glm::dvec3 r;
     for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
@@ -41,10 +43,11 @@ glm::dvec3 world_vertex(const kernels::Affine& at, const kernels::Vec3f& v) {
 
 }  // namespace
 
-void EmitterTables::set(const SceneSnapshot& snapshot, const kernels::SceneView& view) {
+template <class T>
+void EmitterTablesOf<T>::set(const SceneSnapshot& snapshot, const kernels::SceneViewOf<T>& view) {
     triangles_.clear();
     cdf_.clear();
-    instance_density_.assign(snapshot.instances.size(), 0.0f);
+    instance_density_.assign(snapshot.instances.size(), T(0));
     std::map<int, float> texture_means;
     std::vector<double> cumulative{0.0};
     std::vector<Place> places;
@@ -56,18 +59,20 @@ void EmitterTables::set(const SceneSnapshot& snapshot, const kernels::SceneView&
             texture_means[texture] = average_luminance(view.textures, material.emissive_texture);
         const double strength = kernels::luminance(material.emission) * texture_means[texture];
         if (!(strength > 0)) continue;
-        instance_density_[i] = static_cast<float>(strength);
+        instance_density_[i] = static_cast<T>(strength);
         add_instance(snapshot, view, i, strength, cumulative, places);
     }
-    emitted_power_ = static_cast<float>(cumulative.back());
+    emitted_power_ = static_cast<T>(cumulative.back());
     if (cumulative.back() > 0) normalise(cumulative, places);
 }
 
-void EmitterTables::add_instance(const SceneSnapshot& snapshot, const kernels::SceneView& view, std::size_t index,
-                                 double strength, std::vector<double>& cumulative, std::vector<Place>& places) {
+template <class T>
+void EmitterTablesOf<T>::add_instance(const SceneSnapshot& snapshot, const kernels::SceneViewOf<T>& view,
+                                      std::size_t index, double strength, std::vector<double>& cumulative,
+                                      std::vector<Place>& places) {
     const kernels::Material& material = view.materials[snapshot.instances[index].material];
     const kernels::Geometry& geometry = view.geometries[view.instances[index].geometry];
-    const kernels::Affine at = kernels::transform_at(view, static_cast<unsigned>(index), 0.0f);
+    const kernels::AffineOf<T> at = kernels::transform_at(view, static_cast<unsigned>(index), T(0));
     const bool varies = material.emissive_texture.texture >= 0 || geometry.key_count > 1 ||
                         view.motions[index].kind != kernels::InstanceMotion::Kind::still;
     const auto place = [&](unsigned corner) {
@@ -77,28 +82,30 @@ void EmitterTables::add_instance(const SceneSnapshot& snapshot, const kernels::S
         const glm::dvec3 a = place(3 * t), b = place(3 * t + 1), c = place(3 * t + 2);
         const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
         if (!(power > 0)) continue;
-        triangles_.push_back({to_float(a), to_float(b - a), to_float(c - a), material.emission, 0,
+        triangles_.push_back({rounded<T>(a), rounded<T>(b - a), rounded<T>(c - a), kernels::splat<T>(material.emission), 0,
                               static_cast<unsigned>(index), t, varies ? 1u : 0u});
         cumulative.push_back(cumulative.back() + power);
         places.push_back({(a + b + c) / 3.0, power});
     }
 }
 
-void EmitterTables::normalise(const std::vector<double>& cumulative, const std::vector<Place>& places) {
+template <class T>
+void EmitterTablesOf<T>::normalise(const std::vector<double>& cumulative, const std::vector<Place>& places) {
     const double total = cumulative.back();
     for (double c : cumulative) cdf_.push_back(static_cast<float>(c / total));
-    for (float& d : instance_density_) d = static_cast<float>(d / total);
-    for (kernels::EmissiveTriangle& t : triangles_) t.density = instance_density_[t.instance];
+    for (T& d : instance_density_) d = static_cast<T>(d / total);
+    for (kernels::EmissiveTriangleOf<T>& t : triangles_) t.density = instance_density_[t.instance];
     glm::dvec3 centre(0);
     for (const Place& p : places) centre += p.centre * p.power;
     centre /= total;
     double radius_squared = 1e-12;
     for (const Place& p : places) radius_squared += p.power / total * glm::dot(p.centre - centre, p.centre - centre);
-    centre_ = to_float(centre);
-    radius_squared_ = static_cast<float>(radius_squared);
+    centre_ = rounded<T>(centre);
+    radius_squared_ = static_cast<T>(radius_squared);
 }
 
-void EmitterTables::fill(kernels::LightSet& lights) const {
+template <class T>
+void EmitterTablesOf<T>::fill(kernels::LightSetOf<T>& lights) const {
     lights.triangle_count = static_cast<int>(triangles_.size());
     lights.emitted_power = emitted_power_;
     lights.emitter_centre = centre_;
@@ -107,5 +114,8 @@ void EmitterTables::fill(kernels::LightSet& lights) const {
     lights.triangle_cdf = cdf_.data();
     lights.instance_density = instance_density_.data();
 }
+
+template class EmitterTablesOf<float>;
+template class EmitterTablesOf<double>;
 
 }  // namespace kadr

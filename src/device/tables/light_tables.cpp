@@ -1,16 +1,19 @@
 #include "device/tables/light_tables.h"
 
+#include <utility>
+
 #include "kernels/light/light.h"
 
 namespace kadr {
 
-void LightTables::set(const SceneSnapshot& snapshot) {
-    keys_ = snapshot.light_keys;
+template <class T>
+void LightTablesOf<T>::set(std::vector<kernels::LightOf<T>> keys, const std::vector<LightKeys>& lights) {
+    keys_ = std::move(keys);
     first_.clear();
     key_count_.clear();
     visible_count_ = 0;
     for (const bool with_surface : {true, false})
-        for (const LightKeys& light : snapshot.lights) {
+        for (const LightKeys& light : lights) {
             if (kernels::is_delta(keys_[light.first]) == with_surface) continue;
             first_.push_back(static_cast<int>(light.first));
             key_count_.push_back(static_cast<int>(light.count));
@@ -18,7 +21,8 @@ void LightTables::set(const SceneSnapshot& snapshot) {
         }
 }
 
-void LightTables::fill(kernels::LightSet& lights) const {
+template <class T>
+void LightTablesOf<T>::fill(kernels::LightSetOf<T>& lights) const {
     lights.keys = keys_.data();
     lights.first = first_.data();
     lights.key_count = key_count_.data();
@@ -26,14 +30,20 @@ void LightTables::fill(kernels::LightSet& lights) const {
     lights.visible_count = visible_count_;
 }
 
-void fill_environment(const SceneSnapshot& snapshot, const EnvironmentTables& environment, kernels::LightSet& lights) {
-    lights.environment = snapshot.environment.radiance;
-    lights.environment_visible = snapshot.environment.visible;
+template <class T>
+void fill_environment(const EnvironmentSnapshot& seen, const EnvironmentTables& environment, kernels::LightSetOf<T>& lights) {
+    lights.environment = seen.radiance;
+    lights.environment_visible = seen.visible;
     lights.has_map = !environment.empty();
     lights.map = environment.map();
-    lights.map.factor = snapshot.environment.radiance;
-    lights.map.rotate_rad = snapshot.environment.rotate_rad;
-    lights.map.average_luminance *= kernels::luminance(snapshot.environment.radiance);
+    lights.map.factor = seen.radiance;
+    lights.map.rotate_rad = seen.rotate_rad;
+    lights.map.average_luminance *= kernels::luminance(seen.radiance);
 }
+
+template class LightTablesOf<float>;
+template class LightTablesOf<double>;
+template void fill_environment(const EnvironmentSnapshot&, const EnvironmentTables&, kernels::LightSetOf<float>&);
+template void fill_environment(const EnvironmentSnapshot&, const EnvironmentTables&, kernels::LightSetOf<double>&);
 
 }  // namespace kadr

@@ -1,14 +1,13 @@
 #pragma once
 
-// The scene of the processor's device as the GPU's driver meets it: a tracer in the sense of kernels/gpu/render_pixel.h
-// that asks Embree what the device's portable driver asks.
-
 #include "device/embree/embree_scene.h"
 #include "kernels/integrator/coverage.h"
 #include "kernels/integrator/path.h"
 
-namespace kadr::test {
+namespace kadr {
 
+/// Single rays through the processor's scene: a tracer in the sense of kernels/gpu/render_pixel.h that asks Embree what
+/// the device's portable driver asks.
 class EmbreeTracer {
 public:
     EmbreeTracer(const EmbreeScene& scene, bool keep_blend) : scene_(scene), keep_blend_(keep_blend) {}
@@ -66,4 +65,4 @@ private:
     bool keep_blend_;
 };
 
-}  // namespace kadr::test
+}  // namespace kadr

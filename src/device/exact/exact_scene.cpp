@@ -1,0 +1,105 @@
+#include "device/exact/exact_scene.h"
+
+#include <cmath>
+
+#include "frame/bindings.h"
+#include "frame/camera_keys.h"
+#include "frame/decompose.h"
+#include "frame/light_keys.h"
+
+namespace kadr {
+namespace {
+
+glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
+
+std::vector<ExactBox> boxes_of(const kernels::Geometry& mesh) {
+    std::vector<ExactBox> boxes(mesh.triangle_count);
+    for (unsigned i = 0; i < 3 * mesh.triangle_count; ++i) boxes[i / 3].add(to_double(mesh.vertices[mesh.indices[i]].position));
+    return boxes;
+}
+
+kernels::AffineOf<double> affine(const glm::dmat4& m) {
+    kernels::AffineOf<double> a;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) a.m[row][column] = m[column][row];
+    return a;
+}
+
+ExactBox box_in_world(const ExactBox& box, const glm::dmat4& world_from_object) {
+    ExactBox world;
+    for (int corner = 0; corner < 8; ++corner)
+        world.add(glm::dvec3(world_from_object * glm::dvec4(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                                            corner & 4 ? box.high.z : box.low.z, 1)));
+    return world;
+}
+
+}  // namespace
+
+ExactMeshes::ExactMeshes(const Scene& scene) {
+    packed.reserve(scene.geometries.size());
+    for (const GeometryData& source : scene.geometries) {
+        views.push_back(packed.emplace_back(source).view(source));
+        const std::vector<ExactBox> boxes = boxes_of(views.back());
+        trees.emplace_back(boxes);
+        bounds.emplace_back();
+        for (const ExactBox& box : boxes) bounds.back().add(box);
+    }
+}
+
+ExactScene::ExactScene(const BoundShot& shot, const ExactMeshes& meshes, const EnvironmentTables& environment, const SceneSnapshot& snapshot)
+    : shot_(shot), meshes_(meshes), snapshot_(snapshot), materials_(shot.scene()) {
+    materials_.set(snapshot);
+    for (const TextureData& texture : shot.scene().textures) textures_.push_back(texture.view());
+    for (const SnapshotInstance& instance : snapshot.instances) {
+        instances_.push_back({instance.geometry, instance.material, instance.id});
+        motions_.push_back({static_cast<unsigned>(motions_.size()), 1, kernels::InstanceMotion::Kind::still, false});
+    }
+    matrices_.resize(instances_.size());
+    placed_.resize(instances_.size());
+    view_.geometries = meshes.views.data();
+    view_.instances = instances_.data();
+    view_.motions = motions_.data();
+    view_.matrices = matrices_.data();
+    view_.materials = materials_.data();
+    view_.textures = textures_.data();
+    view_.camera = {&camera_, 1, snapshot.camera.orthographic, snapshot.camera.blades, snapshot.camera.near_clip, snapshot.camera.far_clip};
+    view_.settings = snapshot.settings;
+    fill_environment(snapshot.environment, environment, view_.lights);
+}
+
+void ExactScene::move_to(double time) {
+    const double time_s = std::lerp(snapshot_.open_s, snapshot_.close_s, time);
+    place_instances(time_s);
+    camera_ = to_key<double>(camera_at(shot_, time_s), snapshot_.render_origin);
+    const double middle_s = 0.5 * (snapshot_.open_s + snapshot_.close_s);
+    std::vector<kernels::LightOf<double>> lights = lights_at(shot_, time_s, middle_s, snapshot_.render_origin);
+    std::vector<LightKeys> each;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) each.push_back({i, 1});
+    lights_.set(std::move(lights), each);
+    lights_.fill(view_.lights);
+    emitters_.set(snapshot_, view_);
+    emitters_.fill(view_.lights);
+}
+
+glm::dmat4 ExactScene::world_from_geometry(const SnapshotInstance& seen, double time_s) const {
+    const Bindings& bindings = shot_.bindings();
+    const Instance instance = bindings.instances[seen.id];
+    glm::dmat4 world = bindings.node_transform(instance.seed->node, instance.copy, time_s) * bindings.copied_from_geometry(shot_.scene(), instance);
+    for (int i = 0; i < 3; ++i) world[3][i] -= snapshot_.render_origin[i];
+    return world;
+}
+
+void ExactScene::place_instances(double time_s) {
+    std::vector<ExactBox> boxes(instances_.size());
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const SnapshotInstance& seen = snapshot_.instances[i];
+        const glm::dmat4 world = world_from_geometry(seen, time_s);
+        matrices_[i] = affine(world);
+        placed_[i].object_from_world = glm::inverse(world);
+        placed_[i].shown = seen.mask != 0 && meshes_.views[seen.geometry].triangle_count > 0 && is_finite(placed_[i].object_from_world);
+        if (placed_[i].shown) boxes[i] = box_in_world(meshes_.bounds[seen.geometry], world);
+    }
+    tree_ = BoxTree(boxes);
+}
+
+}  // namespace kadr
