@@ -56,7 +56,7 @@ void set_intensity(Stage& stage, double factor) {
 
 /// The same illuminance for every contrast.
 void set_contrast(Stage& stage, double ratio) {
-    constexpr double kIlluminance = 3;
+    constexpr double kIlluminance = 1.5;
     stage.key.strength = 0;
     stage.sky = kIlluminance / (std::numbers::pi + ratio * sun_solid_angle());
     stage.sky_sun = ratio * stage.sky;

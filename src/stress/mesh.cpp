@@ -80,16 +80,16 @@ Mesh strips(const std::vector<double>& edges) {
     return mesh;
 }
 
-constexpr double kFlatPart = 0.1, kRise = 0.15;
+constexpr double kFlatPart = 0.1, kFall = 0.1;
 
 double terrain_height(double x, double z) {
     const double beyond = std::max(0.0, std::hypot(x, z) - kFlatPart);
-    return kRise * beyond * beyond;
+    return -kFall * beyond * beyond;
 }
 
 glm::dvec3 terrain_normal(double x, double z) {
-    const double r = std::hypot(x, z), slope = r > kFlatPart ? 2 * kRise * (r - kFlatPart) / r : 0;
-    return glm::normalize(glm::dvec3(-slope * x, 1, -slope * z));
+    const double r = std::hypot(x, z), slope = r > kFlatPart ? 2 * kFall * (r - kFlatPart) / r : 0;
+    return glm::normalize(glm::dvec3(slope * x, 1, slope * z));
 }
 
 }  // namespace

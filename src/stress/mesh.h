@@ -22,7 +22,7 @@ Mesh sliver_sphere(double aspect);
 Mesh square();
 /// The same with a bundle of narrow strips along its middle: `aspect` times as long as wide.
 Mesh sliver_square(double aspect);
-/// From -1 to 1 in x and z, flat in the middle, rising towards its rim. @param cells  along each side
+/// From -1 to 1 in x and z, flat in the middle, falling towards its rim. @param cells  along each side
 Mesh terrain(int cells);
 /// Radius 1 at y = 0, facing +y: triangles that meet in its middle.
 Mesh disc(int triangles);

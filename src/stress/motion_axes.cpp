@@ -15,7 +15,7 @@ constexpr double kTurn_deg = 20;  // in a shutter, of what moves in an ordinary 
 /// The block becomes a bar in front of the ball, whose turns about +z show.
 Object& bar(Stage& stage) {
     Object& block = stage.object("Block");
-    block.translate = {0, 1.2, 1.5};
+    block.translate = {0.8, 1.2, 1.5};
     block.scale = {1, 0.12, 0.12};
     return block;
 }
@@ -86,6 +86,7 @@ void set_copies(Stage& stage, double count) {
     Object stud;
     stud.name = "Stud";
     stud.mesh = cone(6);
+    stud.material.base_color = {0.6, 0.35, 0.2};
     const int rows = std::max(1, static_cast<int>(std::ceil(std::sqrt(count))));
     const double spacing = 6.0 / rows;
     stud.scale = glm::dvec3(0.3 * spacing);
@@ -100,7 +101,7 @@ void set_copies(Stage& stage, double count) {
 
 void set_pixels(Stage& stage, double side) { stage.width = stage.height = static_cast<int>(side); }
 
-constexpr std::string_view kHalfTurn = "180 deg apart", kTurnsOver = "passes through zero", kZero = "scale is zero", kFps = "timing.fps is";
+constexpr std::string_view kHalfTurn = "180 deg apart", kTurnsOver = "passes through zero", kZero = "scale is zero", kInsideOut = "turns inside out", kFps = "timing.fps is";
 
 }  // namespace
 
@@ -117,9 +118,9 @@ std::vector<Axis> motion_axes() {
         {.name = "shrink", .unit = "", .meaning = "size of the ball when the shutter closes, of 1 when it opens; keys of the shot",
          .values = {-1, 0, 1e-9, 1e-3, 0.5, 1}, .quick = {-1, 0, 1e-3, 1}, .ordinary = 1, .refusals = {{-1, kTurnsOver}, {0, kZero}}, .apply = set_shrink},
         {.name = "clip_shrink", .unit = "", .meaning = "the same by a clip of the glTF file, which may pass through nothing",
-         .values = {-1, 0, 1e-9, 1e-3, 0.5, 1}, .quick = {-1, 0, 1e-3, 1}, .ordinary = 1, .apply = set_clip_shrink},
+         .values = {-1, 0, 1e-9, 1e-3, 0.5, 1}, .quick = {-1, 0, 1e-3, 1}, .ordinary = 1, .refusals = {{-1, kInsideOut}}, .apply = set_clip_shrink},
         {.name = "clip_mirror", .unit = "", .meaning = "width of the ball when the shutter closes, by a clip; negative: mirrored",
-         .values = {-1, -1e-6, 0, 1e-6, 1e-3, 0.5, 1}, .quick = {-1, 0, 0.5, 1}, .ordinary = 1, .apply = set_clip_mirror},
+         .values = {-1, -1e-6, 0, 1e-6, 1e-3, 0.5, 1}, .quick = {-1, 0, 0.5, 1}, .ordinary = 1, .refusals = {{-1, kInsideOut}, {-1e-6, kInsideOut}}, .apply = set_clip_mirror},
         {.name = "time", .unit = "s", .meaning = "of the frame; what moves does so while its shutter is open",
          .values = {0, 1e3, 1e5, 1e6, 1e7}, .quick = {0, 1e3, 1e7}, .ordinary = 0, .same_picture = true, .apply = set_time},
         {.name = "fps", .unit = "1/s", .meaning = "frame rate, with the shutter open for half a frame",

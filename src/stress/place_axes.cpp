@@ -37,7 +37,9 @@ void set_telephoto(Stage& stage, double ratio) {
     camera.authored = true;
 }
 
+/// The floor becomes as wide as the widest pictures see.
 void set_field_of_view(Stage& stage, double degrees) {
+    stage.object("Floor").scale = {1e4, 1, 1e4};
     stage.camera.vertical_fov_deg = degrees;
     stage.camera.authored = true;
 }
@@ -58,8 +60,8 @@ std::vector<Axis> place_axes() {
          .values = {1, 10, 1e3, 1e5, 1e7}, .quick = {1, 1e3, 1e7}, .ordinary = 1, .apply = set_size_ratio},
         {.name = "telephoto", .unit = "", .meaning = "distance of the camera over the size of its subject, which fills the picture",
          .values = {2, 10, 1e2, 1e4, 1e5, 1e6, 1e7}, .quick = {2, 1e4, 1e6}, .ordinary = 2, .refusals = {{1e7, "/perspective/yfov is"}}, .apply = set_telephoto},
-        {.name = "field_of_view", .unit = "deg", .meaning = "vertical angle of the picture; the camera stays",
-         .values = {1e-3, 0.01, 1, 35, 120, 170, 179, 179.9}, .quick = {1e-3, 35, 179.9}, .ordinary = 35, .apply = set_field_of_view},
+        {.name = "field_of_view", .unit = "deg", .meaning = "vertical angle of the picture; the camera stays, above a floor of 20 km",
+         .values = {1e-3, 0.01, 1, 30, 120, 170, 179, 179.9}, .quick = {1e-3, 30, 179, 179.9}, .ordinary = 30, .apply = set_field_of_view},
     };
 }
 

@@ -44,7 +44,7 @@ Stage base_stage() {
                      make("Block", cube(), {0.5, 0.4, 0.6}, {1.7, 0.35, 0.7}, {0.35, 0.35, 0.35})};
     stage.object("Back").rotate = quarter_turn({1, 0, 0}, 1);   // faces +z
     stage.object("Side").rotate = quarter_turn({0, 0, 1}, -1);  // faces +x
-    stage.camera = {{3, 2.6, 6.6}, {0.2, 0.9, 0}, 35, false};
+    stage.camera = {{3, 2.6, 6.6}, {0.3, 0.9, 0}, 30, false};
     stage.key.strength = 40;
     stage.key.position = {2.5, 4, 3};
     stage.key.target = {0, 0.5, 0};

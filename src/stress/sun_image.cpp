@@ -11,7 +11,7 @@ namespace kadr::stress {
 
 namespace {
 
-constexpr int kWidth = 64, kHeight = 32, kSunColumn = 38, kSunRow = 7;
+constexpr int kWidth = 64, kHeight = 32, kSunColumn = 57, kSunRow = 7;
 
 /// Three mantissas and their common exponent.
 void add_grey(std::vector<unsigned char>& bytes, double value) {

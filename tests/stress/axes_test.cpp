@@ -9,6 +9,8 @@
 #include <map>
 
 #include "base/error.h"
+#include "frame/snapshot.h"
+#include "render/loaded_shot.h"
 #include "render/render_job.h"
 #include "render/tiny_shot.h"
 
@@ -68,10 +70,12 @@ TEST(Axes, CellsAreNamedByTheirValues) {
     EXPECT_EQ(name_of(Cell{&axis_of("distance"), 1e4, &axis_of("spin"), 1e30}), "distance_10000_spin_1e+30");
 }
 
-/// "" where the check finds nothing wrong.
+/// What stops the shot before its first ray; "" where nothing does.
 std::string errors_of(const std::filesystem::path& shot) {
     try {
         check_shot(shot, {});
+        const LoadedShot loaded(parse_shot(shot));
+        make_snapshots(loaded.bound(), loaded.bound().sequence().frame(loaded.bound().timing().frames.front()));
     } catch (const InputError& error) {
         return error.what();
     }
