@@ -150,6 +150,7 @@ private:
     void add_measure();
     void add_info();
     void add_devices();
+    void add_stress();
 
     CLI::App* chosen(const std::vector<std::string>& arguments) const;
     [[noreturn]] void refuse(const std::vector<std::string>& arguments, const CLI::ParseError& error) const;
@@ -182,6 +183,7 @@ Parser::Parser() {
     add_measure();
     add_info();
     add_devices();
+    add_stress();
 }
 
 CLI::App* Parser::add(Command command, const std::string& name, const std::string& description,
@@ -324,6 +326,18 @@ void Parser::add_info() {
                         "kadr info output/turntable/turntable.0042.png");
     app->add_option("FILE", invocation_.file, "image file")->required();
     app->add_flag("--json", invocation_.json, "as a JSON object");
+}
+
+void Parser::add_stress() {
+    CLI::App* app = add(Command::stress, "stress", "where numbers stop being right: generated shots at the extremes, against a reference in double",
+                        "kadr stress --quick\n"
+                        "  kadr stress distance telephoto --output far --html far/page.html");
+    stress::StressOptions& options = invocation_.stress;
+    app->add_option("AXIS", options.axes, "quantities to sweep (default: all)");
+    app->add_flag("--quick", options.quick, "fewer values: under a minute");
+    app->add_option("--output", options.output, "folder of the generated shots and of the report")->capture_default_str();
+    add_device(app);
+    app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
 
 void Parser::add_devices() {

@@ -8,10 +8,11 @@
 #include "measure/measure_job.h"
 #include "render/render_job.h"
 #include "render/smoke.h"
+#include "stress/sweep.h"
 
 namespace kadr {
 
-enum class Command { render, preview, check, describe, smoke, compare, measure, info, devices };
+enum class Command { render, preview, check, describe, smoke, compare, measure, info, devices, stress };
 
 /// What the user asked for. Only the members of `command` are filled in.
 struct Invocation {
@@ -21,6 +22,7 @@ struct Invocation {
     SmokeOptions smoke;
     CompareOptions compare;
     MeasureOptions measure;
+    stress::StressOptions stress;
     std::vector<std::filesystem::path> shots;    ///< check
     std::filesystem::path file;                  ///< info
     std::filesystem::path junit;

@@ -220,6 +220,28 @@ int run_measure(const Invocation& invocation) {
     return kDone;
 }
 
+std::string stress_line(const stress::CellResult& r) {
+    const std::string cell = fmt::format("{} {:<34}", r.sound() ? "ok    " : "FAILED", stress::name_of(r.cell));
+    if (!r.refused.empty()) return fmt::format("{} refused: {}\n", cell, r.refused);
+    std::string line = cell;
+    if (r.picture) line += fmt::format(" {:>8.3f} {:>8.1f} {:>7.2f}%", 255 * r.picture->mean, 255 * r.picture->largest, 100 * r.picture->beyond);
+    if (r.rays)
+        line += fmt::format(" {:>6} {:>6} {:>6} {:>6} {:>9.2g} {:>9.2g}", r.rays->holes, r.rays->wrong_surfaces, r.rays->false_shadows, r.rays->leaks, r.rays->position_error_px,
+                            r.rays->position_error_ulp);
+    if (r.drift) line += fmt::format("  drift {:.2g}", 255 * r.drift->mean);
+    if (r.dropped_samples > 0) line += fmt::format("  {} samples dropped", r.dropped_samples);
+    if (r.not_finite > 0) line += fmt::format("  {} values not finite", r.not_finite);
+    return line + fmt::format("  {:.2f} s\n", r.seconds);
+}
+
+int run_stress(const Invocation& invocation) {
+    const auto results = stress::run_sweep(invocation.stress, [&](const stress::CellResult& result, std::size_t, std::size_t) {
+        print(stress_line(result));
+        std::fflush(stdout);
+    });
+    return std::all_of(results.begin(), results.end(), [](const stress::CellResult& r) { return r.sound(); }) ? kDone : kFailed;
+}
+
 int run_info(const Invocation& invocation) {
     const Metadata metadata = describe_image(invocation.file);
     if (invocation.json) {
@@ -276,7 +298,7 @@ int run_command(const Invocation& invocation) {
         {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
         {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::compare, run_compare},
         {Command::measure, run_measure}, {Command::info, run_info},
-        {Command::devices, run_devices},
+        {Command::devices, run_devices}, {Command::stress, run_stress},
     };
     return kCommands.at(invocation.command)(invocation);
 }

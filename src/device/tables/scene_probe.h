@@ -24,6 +24,8 @@ public:
         pinhole.keys = &key;
         pinhole.key_count = 1;
         kernels::camera_ray<T>(pinhole, s.width, s.height, {T(film_px.x), T(film_px.y)}, path.time, {T(0.5), T(0.5)}, path.origin, path.direction);
+        // Renderers drop such samples: here nothing is met.
+        if (!kernels::is_finite(path.origin) || !kernels::is_finite(path.direction)) return {};
         kernels::Hit<T> hit{0, 0, 0, 0, T(kernels::kInfinity)};
         tracer.closest(path, hit);
         if (!(hit.distance < T(kernels::kInfinity))) return {};
@@ -38,6 +40,7 @@ public:
         shadow.origin = interaction(hit, static_cast<T>(time), kernels::splat<T>(ray.to_viewer)).origin;
         shadow.direction = kernels::splat<T>(ray.direction);
         shadow.distance = ray.distance_m;
+        if (!kernels::is_finite(shadow.origin) || !kernels::is_finite(shadow.direction)) return true;
         float transmittance = 1;
         tracer.shadow(shadow, static_cast<T>(time), transmittance);
         return !(transmittance > 0);
