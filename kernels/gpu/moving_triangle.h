@@ -48,8 +48,8 @@ SHARED_FN T edge_function(Vec3<T> from, Vec3<T> to) {
 
 /// From either side; edges and corners belong to their triangles, so that a closed mesh lets no ray through.
 template <class T>
-SHARED_FN bool intersect_triangle(Vec3<T> origin, Vec3<T> direction, const Vec3<T> (&corners)[3], T min_distance,
-                                  T max_distance, TriangleHitOf<T>& hit) {
+SHARED_FN bool intersect_triangle(Vec3<T> origin, Vec3<T> direction, const Vec3<T> (&corners)[3],
+                                  Real<T> min_distance, Real<T> max_distance, TriangleHitOf<T>& hit) {
     const RayFrame<T> frame(origin, direction);
     const Vec3<T> a = frame.local(corners[0]), b = frame.local(corners[1]), c = frame.local(corners[2]);
     const T wa = edge_function(c, b), wb = edge_function(a, c), wc = edge_function(b, a);

@@ -288,14 +288,15 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
 }  // namespace
 
 template <class T>
-kernels::CameraKeyOf<T> to_key(const CameraState& camera, const glm::dvec3& origin) {
-    const glm::vec<3, T> p(camera.position - origin);
+kernels::CameraKeyOf<T> to_key(const CameraState& camera, const RenderSpace& space) {
+    const glm::vec<3, T> p(space.from_world(camera.position));
     const glm::qua<T> q(camera.rotation);
-    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<T>(camera.tan_half_width), static_cast<T>(camera.tan_half_height),
-            static_cast<T>(camera.lens_radius), static_cast<T>(camera.focus_distance)};
+    const double film_unit = camera.orthographic ? space.unit_m : 1;  // an orthographic picture is as wide as what it shows
+    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<T>(camera.tan_half_width / film_unit), static_cast<T>(camera.tan_half_height / film_unit),
+            static_cast<T>(camera.lens_radius / space.unit_m), static_cast<T>(camera.focus_distance / space.unit_m)};
 }
-template kernels::CameraKeyOf<float> to_key(const CameraState&, const glm::dvec3&);
-template kernels::CameraKeyOf<double> to_key(const CameraState&, const glm::dvec3&);
+template kernels::CameraKeyOf<float> to_key(const CameraState&, const RenderSpace&);
+template kernels::CameraKeyOf<double> to_key(const CameraState&, const RenderSpace&);
 
 CameraState camera_at(const BoundShot& shot, double time_s) {
     CameraState camera = shot.bindings().camera_node >= 0 ? placed_by_node(shot, time_s) : placed_by_shot(shot, time_s);
@@ -306,7 +307,7 @@ CameraState camera_at(const BoundShot& shot, double time_s) {
     return camera;
 }
 
-CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin) {
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space) {
     CameraFit fit;
     std::vector<CameraState> states{camera_at(shot, open_s)};
     if (close_s > open_s) {
@@ -328,7 +329,7 @@ CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const
     }
     for (CameraState& state : states) {
         if (&state != &states.front() && glm::dot((&state)[-1].rotation, state.rotation) < 0) state.rotation = -state.rotation;
-        fit.keys.push_back(to_key<float>(state, origin));
+        fit.keys.push_back(to_key<float>(state, space));
     }
     return fit;
 }

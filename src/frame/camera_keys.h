@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "frame/frame_state.h"
+#include "frame/render_origin.h"
 #include "kernels/scene/scene_types.h"
 
 namespace kadr {
@@ -26,19 +27,19 @@ struct CameraState {
 /// @throws InputError  where the camera stands on what it looks at, or focuses behind itself
 CameraState camera_at(const BoundShot& shot, double time_s);
 
-/// As kernels read it, relative to a render origin. T: float or double.
+/// As kernels read it, in a render space. T: float or double.
 template <class T>
-kernels::CameraKeyOf<T> to_key(const CameraState& camera, const glm::dvec3& origin);
+kernels::CameraKeyOf<T> to_key(const CameraState& camera, const RenderSpace& space);
 
 struct CameraFit {
-    std::vector<kernels::CameraKey> keys;  ///< evenly spaced, relative to the render origin
+    std::vector<kernels::CameraKey> keys;  ///< evenly spaced, in the render space
     double error_px = 0;                   ///< how far the subject's image strays from where the true camera has it, at most
     std::vector<double> corners_s;         ///< keys of its tracks: good times to split the shutter at where the error is too large
 };
 
 /// Keys over a part of the shutter: one when the camera is still, else as many as the motion tolerance and 10 degrees a
 /// step ask for, and no more than 129: then the error is above the tolerance.
-CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const glm::dvec3& origin);
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space);
 
 /// The parts of the camera that do not change within a part of the shutter; its clip planes are those of `time_s`.
 kernels::Camera make_camera(const BoundShot& shot, double time_s);

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <tbb/parallel_for.h>
 
 #include "base/hash.h"
@@ -147,12 +148,13 @@ std::vector<Shown> shown_meshes(const Bindings& bindings, const SceneSnapshot& s
     return shown;
 }
 
-std::shared_ptr<const DeformedMesh> bend(const BoundShot& shot, const Shown& shown, Part& part, const MotionFrames& motion) {
+std::shared_ptr<const DeformedMesh> bend(const BoundShot& shot, const Shown& shown, Part& part, const MotionFrames& motion, double unit_m) {
     const Bindings& bindings = shot.bindings();
     const BentMesh bent = bindings.bent_mesh(shown.number);
     DeformationView view;
     view.enough_px = kMargin * kDeformationShare * shot.shot().render.motion_tolerance_px;
-    for (const std::size_t i : shown.instances) view.world_from_deformed.push_back(interpolate(motion, i, 0));  // relative to the origin
+    const glm::dmat4 metres = glm::scale(glm::dmat4(1), glm::dvec3(unit_m));
+    for (const std::size_t i : shown.instances) view.world_from_deformed.push_back(metres * interpolate(motion, i, 0));  // relative to the origin
     const FittedPoses fitted = fit_poses(shot, bent, part, view);
     const std::uint64_t version = version_of(fitted.keys);
     if (auto known = bindings.deformed->find(shown.number, version)) return known;
@@ -176,7 +178,7 @@ void add_deformed(const BoundShot& shot, double open_s, double close_s, SceneSna
     const std::vector<Shown> shown = shown_meshes(bindings, snapshot);
     snapshot.deformed.resize(shown.size());
     // Each mesh is skinned in parallel, but most of a crowd's are too small for that.
-    tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { snapshot.deformed[i] = bend(shot, shown[i], part, snapshot.motion); });
+    tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { snapshot.deformed[i] = bend(shot, shown[i], part, snapshot.motion, snapshot.unit_m); });
     double error_px = 0;
     for (std::size_t i = 0; i < shown.size(); ++i) {
         for (const std::size_t instance : shown[i].instances) snapshot.instances.edit(instance).deformed = static_cast<int>(i);

@@ -222,7 +222,7 @@ private:
     }
 
     void place_still(std::size_t i, const glm::dmat4& world) {
-        const glm::dmat4 place = relative(world * copied_from_geometry(i), interval_.origin);
+        const glm::dmat4 place = relative(world * copied_from_geometry(i), interval_.space.origin);
         const Decomposition parts = decompose(place);
         if (!is_finite(place)) return refuse_infinite(i);
         fits_.fitted[i].hidden = is_singular(parts);
@@ -265,7 +265,7 @@ private:
         const std::vector<glm::dmat4> places = corners.transforms.world_from_node(instances_[i]);
         double worst = 0;
         for (std::size_t k = 0; k < places.size(); ++k)
-            worst = std::max(worst, fit.error_px_at(corners.u[k], relative(places[k] * local, interval_.origin), corners.scales[k]));
+            worst = std::max(worst, fit.error_px_at(corners.u[k], relative(places[k] * local, interval_.space.origin), corners.scales[k]));
         return worst;
     }
 
@@ -281,7 +281,7 @@ private:
         for (const std::size_t i : members) {
             const glm::dmat4 local = copied_from_geometry(i);
             std::vector<glm::dmat4> places = transforms.world_from_node(instances_[i]);
-            for (glm::dmat4& place : places) place = relative(place * local, interval_.origin);
+            for (glm::dmat4& place : places) place = relative(place * local, interval_.space.origin);
             fit_one(i, segments, Fit(std::move(places), interval_, scales));
         }
     }
@@ -329,7 +329,7 @@ private:
 
 PixelScale Interval::scale_at(double u) const {
     CameraState camera = camera_at(shot, time(u));
-    camera.position -= origin;
+    camera.position -= space.origin;
     return {camera, image_height};
 }
 

@@ -8,13 +8,14 @@
 #include "frame/decompose.h"
 #include "frame/frame_state.h"
 #include "frame/instance_list.h"
+#include "frame/render_origin.h"
 
 namespace kadr {
 
 /// A part of the shutter, and what the camera does in it.
 struct Interval {
     const BoundShot& shot;
-    glm::dvec3 origin;  ///< render origin
+    RenderSpace space;
     double open_s, close_s;
     double tolerance_px;
     int image_height;
@@ -31,7 +32,7 @@ struct MotionFit {
     std::vector<double> corners_s;  ///< keys, beside every even grid, of what strays: good times to split the shutter at
 };
 
-/// The frames of some instances, evenly spaced over the interval and relative to the render origin.
+/// The frames of some instances, evenly spaced over the interval; metres relative to the render origin.
 struct InstanceFits {
     /// Of one instance: its frames lie in the list below.
     struct Fitted {

@@ -66,12 +66,26 @@ void set_cone(ExactLight& light, double inner_rad, double outer_rad) {
     light.cos_outer = std::cos(outer_rad);
 }
 
+/// From metres relative to the origin to units.
+ExactLight in_units(ExactLight light, double unit_m) {
+    const double per_unit = 1 / unit_m;  // exact: a power of two
+    light.position = light.position * per_unit;
+    light.axis_u = light.axis_u * per_unit;
+    light.axis_v = light.axis_v * per_unit;
+    light.range *= per_unit;
+    light.radius *= per_unit;
+    // Lux at a metre is candela; a radiance has no length in it.
+    if (light.kind == kernels::LightKind::point || light.kind == kernels::LightKind::spot) light.radiance = light.radiance * (per_unit * per_unit);
+    return light;
+}
+
 void set_rectangle(ExactLight& light, const glm::dvec3& direction, const glm::dvec2& size_m) {
     const ViewAxes axes = view_axes(direction, {0, 1, 0});
     light.axis_u = to_vec(0.5 * size_m.x * axes.right);
     light.axis_v = to_vec(0.5 * size_m.y * axes.up);
 }
 
+/// Relative to `origin`, metres.
 ExactLight light_at(const BoundShot& shot, const LightSpec& spec, double time_s, const glm::dvec3& origin) {
     ExactLight light{};
     const glm::dvec3 position = evaluate(spec.position, time_s);
@@ -135,13 +149,18 @@ ExactLight light_at(const BoundShot& shot, const LightSeed& seed, double time_s,
     return light;
 }
 
+template <class Source>
+ExactLight light_at(const BoundShot& shot, const Source& source, double time_s, const RenderSpace& space) {
+    return in_units(light_at(shot, source, time_s, space.origin), space.unit_m);
+}
+
 bool same(const kernels::Light& a, const kernels::Light& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 double length_of(const kernels::Vec3f& v) { return std::sqrt(static_cast<double>(dot(v, v))); }
 
 /// How far half-way values lie from the true ones, as SceneSnapshot::light_error has it.
-/// @param distance_m  of what the camera looks at
-double deviation(const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted, double distance_m) {
+/// @param subject_distance  in the units of the lights
+double deviation(const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted, double subject_distance) {
     const auto t = static_cast<float>(u);
     const auto off = [t](const kernels::Vec3f& from, const kernels::Vec3f& to, const kernels::Vec3f& is, double scale) {
         const double distance = length_of(from + (to - from) * t - is);
@@ -153,7 +172,7 @@ double deviation(const kernels::Light& a, const kernels::Light& b, double u, con
     };
     const double brightness = std::max(length_of(a.radiance), length_of(b.radiance));
     const double size = length_of(a.axis_u) + length_of(a.axis_v);
-    return std::max({off(a.radiance, b.radiance, wanted.radiance, brightness), off(a.position, b.position, wanted.position, distance_m),
+    return std::max({off(a.radiance, b.radiance, wanted.radiance, brightness), off(a.position, b.position, wanted.position, subject_distance),
                      off(a.direction, b.direction, wanted.direction, 1), off(a.axis_u, b.axis_u, wanted.axis_u, size), off(a.axis_v, b.axis_v, wanted.axis_v, size),
                      off_by(a.cos_inner, b.cos_inner, wanted.cos_inner, 1), off_by(a.cos_outer, b.cos_outer, wanted.cos_outer, 1),
                      off_by(a.inner_rad, b.inner_rad, wanted.inner_rad, 1), off_by(a.outer_rad, b.outer_rad, wanted.outer_rad, 1),
@@ -206,12 +225,12 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSpec& spec, d
 /// their own: corners stray farthest in themselves.
 /// @param at  (u in [0, 1]) -> the true light
 template <class At>
-double worst_deviation(const std::vector<kernels::Light>& keys, const std::vector<double>& corners, double distance_m, At at) {
+double worst_deviation(const std::vector<kernels::Light>& keys, const std::vector<double>& corners, double distance, At at) {
     double worst = 0;
     const auto look = [&](double u) {
         const double position = u * static_cast<double>(keys.size() - 1);
         const std::size_t from = std::min(static_cast<std::size_t>(position), keys.size() - 2);
-        worst = std::max(worst, deviation(keys[from], keys[from + 1], position - static_cast<double>(from), at(u), distance_m));
+        worst = std::max(worst, deviation(keys[from], keys[from + 1], position - static_cast<double>(from), at(u), distance));
     };
     const std::size_t checks = 4 * (keys.size() - 1);
     for (std::size_t i = 1; i < checks; ++i)
@@ -222,7 +241,7 @@ double worst_deviation(const std::vector<kernels::Light>& keys, const std::vecto
 
 /// @return the key times where the light misses its tolerance, else none
 template <class At>
-std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, double close_s, double distance_m, At at, SceneSnapshot& snapshot) {
+std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, double close_s, double distance, At at, SceneSnapshot& snapshot) {
     const auto at_step = [&](double u) { return at(open_s + u * (close_s - open_s)); };
     std::vector<kernels::Light> keys{at(open_s)};
     double error = 0;
@@ -233,10 +252,10 @@ std::vector<double> add_keys(const std::vector<double>& times_s, double open_s, 
         int at_least = static_cast<int>(std::min<std::size_t>(key_times.size() + 1, kMostLightSegments));
         for (;; at_least = 2 * static_cast<int>(keys.size() - 1)) {
             keys = fit_keys(base, at_least, kMostLightSegments, at_step, same,
-                            [distance_m](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) {
-                                return deviation(a, b, u, wanted, distance_m) <= kLightTolerance;
+                            [distance](const kernels::Light& a, const kernels::Light& b, double u, const kernels::Light& wanted) {
+                                return deviation(a, b, u, wanted, distance) <= kLightTolerance;
                             });
-            error = keys.size() > 1 ? worst_deviation(keys, key_times, distance_m, at_step) : 0;
+            error = keys.size() > 1 ? worst_deviation(keys, key_times, distance, at_step) : 0;
             if (error <= kLightTolerance || 2 * static_cast<int>(keys.size() - 1) > kMostLightSegments) break;
         }
         snapshot.light_error = std::max(snapshot.light_error, error);
@@ -256,29 +275,29 @@ std::vector<double> key_times_of(const BoundShot& shot, const LightSeed& seed, d
 }  // namespace
 
 std::vector<double> add_light_keys(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
-    const glm::dvec3 origin = snapshot.render_origin;
-    const double distance_m = camera_at(shot, open_s).subject_distance;
+    const RenderSpace space = snapshot.space();
+    const double distance = camera_at(shot, open_s).subject_distance / space.unit_m;
     const double middle_s = 0.5 * (open_s + close_s);  // switches do not change within a part of the shutter
     std::vector<double> missed;
     for (const LightSpec& spec : shot.shot().lights)
         if (is_on(spec.visible, middle_s))
-            append(missed, add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance_m,
-                                    [&](double time) { return to_float(light_at(shot, spec, time, origin)); }, snapshot));
+            append(missed, add_keys(key_times_of(shot, spec, open_s, close_s), open_s, close_s, distance,
+                                    [&](double time) { return to_float(light_at(shot, spec, time, space)); }, snapshot));
     const VisibilityRig::States states = shot.bindings().visibility.at(middle_s);
     for (const LightSeed& seed : shot.bindings().lights)
         if (states.visible(seed.node, seed.clip_offset_s()))
-            append(missed, add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance_m,
-                                    [&](double time) { return to_float(light_at(shot, seed, time, origin)); }, snapshot));
+            append(missed, add_keys(key_times_of(shot, seed, open_s, close_s), open_s, close_s, distance,
+                                    [&](double time) { return to_float(light_at(shot, seed, time, space)); }, snapshot));
     return missed;
 }
 
-std::vector<kernels::LightOf<double>> lights_at(const BoundShot& shot, double time_s, double switch_s, const glm::dvec3& origin) {
+std::vector<kernels::LightOf<double>> lights_at(const BoundShot& shot, double time_s, double switch_s, const RenderSpace& space) {
     std::vector<ExactLight> lights;
     for (const LightSpec& spec : shot.shot().lights)
-        if (is_on(spec.visible, switch_s)) lights.push_back(light_at(shot, spec, time_s, origin));
+        if (is_on(spec.visible, switch_s)) lights.push_back(light_at(shot, spec, time_s, space));
     const VisibilityRig::States states = shot.bindings().visibility.at(switch_s);
     for (const LightSeed& seed : shot.bindings().lights)
-        if (states.visible(seed.node, seed.clip_offset_s())) lights.push_back(light_at(shot, seed, time_s, origin));
+        if (states.visible(seed.node, seed.clip_offset_s())) lights.push_back(light_at(shot, seed, time_s, space));
     return lights;
 }
 

@@ -74,7 +74,7 @@ float frame_time(std::size_t frame, std::size_t count) {
 /// Lays the frames of batches out in lists that follow others of some lengths.
 class Packing {
 public:
-    Packing(const BoundShot& shot, const std::vector<Batch>& batches, const PlacedInstances* before) : shot_(shot) {
+    Packing(const Interval& interval, const std::vector<Batch>& batches, const PlacedInstances* before) : shot_(interval.shot), unit_m_(interval.space.unit_m) {
         if (before) srt_before_ = before->srt.size(), matrices_before_ = before->matrices.size(), places_before_ = before->fixed_places.size();
         std::size_t most = 0;
         for (const Batch& batch : batches) most += batch.instances.size();
@@ -134,15 +134,23 @@ private:
         for (std::size_t k = 0; k < count; ++k) {
             const float time = frame_time(k, count);
             if (placed_.types[i] == FrameType::matrix) {
-                placed_.matrices[first - matrices_before_ + k] = to_matrix(sources_[i][k], time);
+                placed_.matrices[first - matrices_before_ + k] = to_matrix(in_units(sources_[i][k]), time);
                 continue;
             }
             const std::size_t at = first - srt_before_ + k;
-            placed_.srt[at] = to_srt(sources_[i][k], time, k > 0 ? &placed_.srt[at - 1] : nullptr);
+            placed_.srt[at] = to_srt(in_units(sources_[i][k]), time, k > 0 ? &placed_.srt[at - 1] : nullptr);
         }
     }
 
+    Decomposition in_units(Decomposition parts) const {
+        parts.translation /= unit_m_;
+        parts.scale /= unit_m_;
+        parts.shear /= unit_m_;
+        return parts;
+    }
+
     const BoundShot& shot_;
+    const double unit_m_;
     PlacedInstances placed_;
     std::vector<const Decomposition*> sources_;  ///< [instance] its frames
     std::size_t srt_before_ = 0, matrices_before_ = 0, places_before_ = 0;
@@ -154,11 +162,11 @@ private:
 /// What stands still, seen from the interval's render origin.
 std::shared_ptr<const PlacedInstances> still_places(const Interval& interval) {
     const Bindings& bindings = interval.shot.bindings();
-    if (auto known = bindings.still_places->find(interval.origin)) return known;
+    if (auto known = bindings.still_places->find(interval.space)) return known;
     const std::vector<Batch> batches = fit_batches(interval, bindings.still);
-    auto placed = std::make_shared<PlacedInstances>(Packing(interval.shot, batches, nullptr).take());
+    auto placed = std::make_shared<PlacedInstances>(Packing(interval, batches, nullptr).take());
     placed->key = key_of(*placed);
-    return bindings.still_places->keep(interval.origin, std::move(placed));
+    return bindings.still_places->keep(interval.space, std::move(placed));
 }
 
 /// A list that begins with one of `still`, which it keeps alive, and goes on with `own`.
@@ -234,12 +242,12 @@ glm::dmat4 interpolate(const MotionFrames& motion, std::size_t instance, double 
 }
 
 MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
-    const Interval interval{shot, snapshot.render_origin, open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
+    const Interval interval{shot, snapshot.space(), open_s, close_s, shot.shot().render.motion_tolerance_px, shot.shot().image.height};
     const std::vector<Batch> batches = fit_batches(interval, shot.bindings().changing);
     MotionFit fit = quality_of(batches);
     if (fit.too_fast) return fit;
     const std::shared_ptr<const PlacedInstances> still = still_places(interval);
-    Packing packing(shot, batches, still.get());
+    Packing packing(interval, batches, still.get());
     join(still, packing.take(), snapshot);
     snapshot.motion.max_error_px = packing.max_error_px();
     snapshot.motion.bending_error_px = packing.bending_error_px();

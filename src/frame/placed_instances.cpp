@@ -11,7 +11,7 @@ namespace kadr {
 namespace {
 
 /// A camera that moves back and forth over the border of two cells, or frames of two threads.
-constexpr std::size_t kMostOrigins = 2;
+constexpr std::size_t kMostSpaces = 2;
 
 template <class T>
 void add_bytes(Hasher& hasher, const std::vector<T>& values) {
@@ -33,18 +33,18 @@ std::uint64_t key_of(const PlacedInstances& placed) {
     return hasher.finish().low;
 }
 
-std::shared_ptr<const PlacedInstances> StillInstances::find(const glm::dvec3& origin) const {
+std::shared_ptr<const PlacedInstances> StillInstances::find(const RenderSpace& space) const {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(latest_.begin(), latest_.end(), [&](const Entry& entry) { return entry.first == origin; });
+    const auto found = std::find_if(latest_.begin(), latest_.end(), [&](const Entry& entry) { return entry.first == space; });
     return found == latest_.end() ? nullptr : found->second;
 }
 
-std::shared_ptr<const PlacedInstances> StillInstances::keep(const glm::dvec3& origin, std::shared_ptr<const PlacedInstances> placed) {
+std::shared_ptr<const PlacedInstances> StillInstances::keep(const RenderSpace& space, std::shared_ptr<const PlacedInstances> placed) {
     const std::lock_guard lock(mutex_);
     for (const Entry& entry : latest_)
-        if (entry.first == origin) return entry.second;
-    if (latest_.size() == kMostOrigins) latest_.erase(latest_.begin());
-    latest_.emplace_back(origin, std::move(placed));
+        if (entry.first == space) return entry.second;
+    if (latest_.size() == kMostSpaces) latest_.erase(latest_.begin());
+    latest_.emplace_back(space, std::move(placed));
     return latest_.back().second;
 }
 

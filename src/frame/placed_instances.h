@@ -25,16 +25,16 @@ struct PlacedInstances {
 /// Hash of the lists of placed instances.
 std::uint64_t key_of(const PlacedInstances& placed);
 
-/// What stands still in a shot, as seen from the last render origins: snapshots of one origin share one object.
+/// What stands still in a shot, in the last render spaces: snapshots of one space share one object.
 class StillInstances {
 public:
     /// Null: not known yet.
-    std::shared_ptr<const PlacedInstances> find(const glm::dvec3& origin) const;
+    std::shared_ptr<const PlacedInstances> find(const RenderSpace& space) const;
     /// @return what snapshots shall share: where another thread was quicker, its object
-    std::shared_ptr<const PlacedInstances> keep(const glm::dvec3& origin, std::shared_ptr<const PlacedInstances> placed);
+    std::shared_ptr<const PlacedInstances> keep(const RenderSpace& space, std::shared_ptr<const PlacedInstances> placed);
 
 private:
-    using Entry = std::pair<glm::dvec3, std::shared_ptr<const PlacedInstances>>;
+    using Entry = std::pair<RenderSpace, std::shared_ptr<const PlacedInstances>>;
     mutable std::mutex mutex_;
     std::vector<Entry> latest_;  ///< the newest last
 };

@@ -173,6 +173,7 @@ std::uint64_t key_of(const SceneSnapshot& snapshot) {
     add_own(hasher, snapshot.motion.linear);
     for (const auto& mesh : snapshot.deformed) hasher.add(static_cast<std::int64_t>(mesh->version));
     for (int i = 0; i < 3; ++i) hasher.add(snapshot.render_origin[i]);
+    hasher.add(snapshot.unit_m);
     return hasher.finish().low;
 }
 
@@ -191,10 +192,10 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
         const Instance instance = bindings.instances[seen.id];
         const int node = instance.seed->node;
         const glm::dmat4 world_from_node = instance.copy ? bindings.node_transform(node, instance.copy, time_s) : nodes[static_cast<std::size_t>(node)];
-        places.world_from_geometry.push_back(world_from_node * bindings.copied_from_geometry(shot.scene(), instance));
+        places.space_from_geometry.push_back(snapshot.space().from_world(world_from_node * bindings.copied_from_geometry(shot.scene(), instance)));
     }
     places.deformed = deformed_positions(shot, snapshot, time_s);
-    places.camera = fit_camera(shot, time_s, time_s, snapshot.render_origin).keys.front();
+    places.camera = fit_camera(shot, time_s, time_s, snapshot.space()).keys.front();
     return places;
 }
 
@@ -202,7 +203,7 @@ class FrameSnapshots {
 public:
     FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
         const CameraState camera = camera_at(shot, frame.open_s);
-        origin_ = render_origin(camera.position, camera.subject_distance);
+        space_ = render_space(camera.position, camera.subject_distance);
     }
 
     std::vector<SceneSnapshot> make() {
@@ -216,7 +217,8 @@ private:
     void add(const Part& part, int depth) {
         const Part inside = inside_of(part);
         SceneSnapshot snapshot;
-        snapshot.render_origin = origin_;
+        snapshot.render_origin = space_.origin;
+        snapshot.unit_m = space_.unit_m;
         if (depth < kDeepestChange && changes_fast(shot_, inside.open_s, inside.close_s)) return split_at(middle(part), part, depth);
         const MotionFit fit = add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot);
         if (fit.too_fast) return split_at(middle(part), part, depth);
@@ -251,7 +253,7 @@ private:
 
     /// @return the times of its keys
     std::vector<double> add_camera(const Part& inside, SceneSnapshot& snapshot) const {
-        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, origin_);
+        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, space_);
         snapshot.camera_keys = std::move(camera.keys);
         snapshot.camera_error_px = camera.error_px;
         snapshot.camera = make_camera(shot_, 0.5 * (inside.open_s + inside.close_s));
@@ -296,7 +298,7 @@ private:
 
     const BoundShot& shot_;
     const FrameTime& frame_;
-    glm::dvec3 origin_;
+    RenderSpace space_;
     std::vector<SceneSnapshot> snapshots_;
 };
 

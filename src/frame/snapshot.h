@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "frame/frame_state.h"
+#include "frame/render_origin.h"
 #include "frame/shared_list.h"
 #include "kernels/camera/shutter.h"
 #include "kernels/scene/motion_types.h"
@@ -19,8 +20,8 @@ namespace kadr {
 /// What the frames of an instance are: SRT, or matrices where it is sheared.
 enum class FrameType : std::uint8_t { srt, matrix };
 
-/// Transforms of all instances over the shutter, in HIPRT's own layout: frames evenly spaced on [0, 1], relative to the
-/// render origin. HIPRT wants one type for the whole scene; here only what is sheared pays for matrices.
+/// Transforms of all instances over the shutter, in HIPRT's own layout: frames evenly spaced on [0, 1], in the render
+/// space. HIPRT wants one type for the whole scene; here only what is sheared pays for matrices.
 struct MotionFrames {
     SharedList<kernels::TransformHeader> headers;  ///< [instance] into srt or matrices
     SharedList<FrameType> types;                   ///< [instance]
@@ -70,14 +71,15 @@ struct EnvironmentSnapshot {
 
 /// Where things were one frame earlier, at that frame's shutter opening: what the motion layer compares with.
 struct PreviousPlaces {
-    /// Absolute, of the instances that are the snapshot's own: what snapshots share has not moved.
-    std::vector<glm::dmat4> world_from_geometry;
-    kernels::CameraKey camera{};                   ///< relative to the render origin of the snapshot that holds it
+    /// In the render space of the snapshot that holds them, of the instances that are its own: what snapshots share has
+    /// not moved.
+    std::vector<glm::dmat4> space_from_geometry;
+    kernels::CameraKey camera{};                   ///< in that space, too
     std::vector<std::vector<kernels::Vec3f>> deformed;  ///< [deformed mesh][vertex]
 };
 
-/// What any device needs of one frame, or of one part of its shutter, and nothing else: float, relative to the render
-/// origin.
+/// What any device needs of one frame, or of one part of its shutter, and nothing else: float, in the frame's render
+/// space. Lengths count in its units (candela and lumen with them); what devices say of lengths, the depth, does too.
 ///
 /// Instances that look and stand the same throughout the shot come first; snapshots with the same render origin share
 /// them, so a device that finds the object of the frame before need not look at it again.
@@ -86,7 +88,8 @@ struct SceneSnapshot {
     double open_s = 0, close_s = 0;            ///< of this part of the shutter
     double weight = 1;                         ///< this part's share of the frame's light; the parts add up to 1
     kernels::Shutter shutter;                  ///< when that light arrives
-    glm::dvec3 render_origin{0};
+    glm::dvec3 render_origin{0};               ///< metres
+    double unit_m = 1;                         ///< of the coordinates that follow (RenderSpace)
     SharedList<SnapshotInstance> instances;
     SharedList<glm::dmat4> fixed_places;       ///< world_from_geometry, double, absolute
     MotionFrames motion;                       ///< headers parallel to instances
@@ -108,6 +111,8 @@ struct SceneSnapshot {
     kernels::Settings settings;
     std::uint64_t still_key = 0;               ///< hash of what the lists share with other snapshots
     std::uint64_t geometry_key = 0;            ///< equal keys: instances and motion are those of the previous frame
+
+    RenderSpace space() const { return {render_origin, unit_m}; }
 };
 
 /// The times inside (begin, end), ascending, at which anything that a snapshot holds jumps: a shutter is split there.

@@ -57,9 +57,9 @@ public:
     }
     void add(const SceneSnapshot& part) {
         // Instances, motion and bent vertices by geometry_key, which is made of them.
-        [[maybe_unused]] const auto& [frame, open_s, close_s, weight, shutter, origin, instances, fixed_places, motion, materials, deformed, camera_keys, camera_error_px, camera, lights,
+        [[maybe_unused]] const auto& [frame, open_s, close_s, weight, shutter, origin, unit_m, instances, fixed_places, motion, materials, deformed, camera_keys, camera_error_px, camera, lights,
                                       light_keys, light_error, environment, previous, settings, still_key, geometry_key] = part;
-        (*this)(weight, shutter, origin, materials, camera_keys, camera, lights, light_keys, environment, previous, settings, geometry_key);
+        (*this)(weight, shutter, origin, unit_m, materials, camera_keys, camera, lights, light_keys, environment, previous, settings, geometry_key);
     }
 
 private:

@@ -39,6 +39,14 @@ void expose(Image& image, double factor) {
         for (std::size_t c = 0; c < kColors; ++c) image.pixels[i + c] *= static_cast<float>(factor);
 }
 
+/// Devices measure in the units of their snapshots; the layer is metres.
+void scale_depth(Image& image, double unit_m) {
+    const auto depth = std::find(image.channels.begin(), image.channels.end(), "depth.Z");
+    if (unit_m == 1 || depth == image.channels.end()) return;
+    const std::size_t channels = image.channels.size(), at = static_cast<std::size_t>(depth - image.channels.begin());
+    for (std::size_t i = at; i < image.pixels.size(); i += channels) image.pixels[i] *= static_cast<float>(unit_m);
+}
+
 // Ten days: a budget that is there, but not known before the first round.
 constexpr double kUnlimitedUntilMeasured_s = 864000;
 
@@ -188,6 +196,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
     rounds.gather();
     frame.sampling = report_sampling(film, steering.stopped_by(), view, scale);
     frame.image = film.develop();
+    scale_depth(frame.image, parts.front().unit_m);
     denoise(frame.image, request.layers, spec);
     expose(frame.image, scale);
     frame.seconds = watch.seconds();

@@ -126,7 +126,7 @@ TEST(Motion, LayerHoldsThePixelsMovedSinceTheFrameBefore) {
         s.camera({0, 0, 10}, {0, 0, 0}, 0.25);  // 32 pixels over 5 m: 6.4 pixels a metre
         s.add_instance(s.add_mesh(unit_square()), glowing(), place({0.25, 0, 0}), fixed);
         PreviousPlaces previous;
-        previous.world_from_geometry = {fixed ? place({0.25, 0, 0}) : place({0, 0, 0})};
+        previous.space_from_geometry = {fixed ? place({0.25, 0, 0}) : place({0, 0, 0})};
         previous.camera = s.snapshot.camera_keys[0];
         if (fixed) previous.camera.position.y += 0.5f;  // the camera sank: the square rose in the image, so y went down
         s.snapshot.previous = previous;

@@ -73,7 +73,7 @@ struct Frames {
         for (const std::vector<glm::dmat4>& frames : moving) {
             scene.add_moving(1, {}, frames, fixed);
             scene.snapshot.instances.edit_back().material = 1;
-            previous.world_from_geometry.push_back(glm::translate(glm::dmat4(1), {0.1, 0, 0}) * frames[0]);
+            previous.space_from_geometry.push_back(glm::translate(glm::dmat4(1), {0.1, 0, 0}) * frames[0]);
         }
         scene.snapshot.previous = previous;
         scene.snapshot.geometry_key = snapshots.size() + 1;

@@ -198,7 +198,7 @@ inline const std::vector<VariedScene>& varied_scenes() {
              add_floor(s, false);
              PreviousPlaces previous;
              previous.camera = s.snapshot.camera_keys[0];
-             for (const double x : {0.1, 0.2, 0.0}) previous.world_from_geometry.push_back(place({x, 0, 0}));
+             for (const double x : {0.1, 0.2, 0.0}) previous.space_from_geometry.push_back(place({x, 0, 0}));
              s.snapshot.previous = previous;
          }},
     };

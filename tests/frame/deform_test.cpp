@@ -270,7 +270,7 @@ TEST(Deformation, TellsWhereVerticesWereAFrameAgo) {
     const SceneSnapshot snapshot = stage.snapshot(1);
     ASSERT_TRUE(snapshot.previous);
     const kernels::Vec3f p = snapshot.previous->deformed.at(0).at(2);
-    const glm::dvec3 world(snapshot.previous->world_from_geometry[0] * glm::dvec4(p.x, p.y, p.z, 1));
+    const glm::dvec3 world(snapshot.previous->space_from_geometry[0] * glm::dvec4(p.x, p.y, p.z, 1));
     EXPECT_LT(glm::distance(world, glm::dvec3(0, 1, 0)), 1e-6);
 }
 

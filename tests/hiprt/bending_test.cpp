@@ -161,7 +161,7 @@ TEST(BendingOnGpu, PlacesOneFrameEarlier) {
     Bending b;
     b.s.snapshot.render_origin = {0, 0, 100};
     b.s.snapshot.previous.emplace();
-    b.s.snapshot.previous->world_from_geometry = {place({5, 0, 0}), place({6, 0, 0})};
+    b.s.snapshot.previous->space_from_geometry = {place({5, 0, -100}), place({6, 0, -100})};
     b.s.snapshot.previous->deformed = {{{9, 0, 0}, {9, 1, 0}, {9, 2, 0}, {9, 3, 0}}};
     b.s.snapshot.previous->camera = b.s.snapshot.camera_keys[0];
     b.s.snapshot.previous->camera.lens_radius = 3;

@@ -237,7 +237,7 @@ TEST(PictureOfGpu, MotionSinceTheFrameBefore) {
     SmallScene s = lit_scene();
     s.add_instance(1, material({0.9f, 0.3f, 0.6f}, 0, 0.6f), place({0, 0, 0}), false);
     s.snapshot.previous.emplace();
-    s.snapshot.previous->world_from_geometry = {
+    s.snapshot.previous->space_from_geometry = {
         s.snapshot.motion.headers.empty() ? place({0, 0, 0}) : place({0, 0, -2}, 4), place({-0.5, 0, 0})};
     s.snapshot.previous->camera = s.snapshot.camera_keys[0];
     expect_same_picture(s);

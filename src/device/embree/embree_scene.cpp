@@ -57,7 +57,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     const bool same_emission = materials_.set(snapshot);
     view_.materials = materials_.data();
     const bool same_geometry =
-        have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.render_origin == flat_origin_;
+        have_frame_ && snapshot.geometry_key == geometry_key_ && snapshot.space() == flat_space_;
     structures_ = {};
     structures_.kept = mesh_scenes_.size() + (same_geometry ? 2 : 0);
     if (!same_geometry) {
@@ -65,7 +65,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
         std::vector<std::uint32_t> flat_ids;
         for (std::size_t i = 0; i < flattened.size(); ++i)
             if (flattened[i]) flat_ids.push_back(snapshot.instances[i].id);
-        const bool same_flat = have_frame_ && flattened == flattened_ && flat_ids == flat_ids_ && snapshot.render_origin == flat_origin_;
+        const bool same_flat = have_frame_ && flattened == flattened_ && flat_ids == flat_ids_ && snapshot.space() == flat_space_;
         if (!same_flat) build_flat(snapshot, flattened);
         ++(same_flat ? structures_.kept : structures_.built);
         geometries_.resize(rigid_geometries_);
@@ -79,7 +79,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
         still_.list = snapshot.instances.shared();
         flattened_ = flattened;
         flat_ids_ = std::move(flat_ids);
-        flat_origin_ = snapshot.render_origin;
+        flat_space_ = snapshot.space();
         geometry_key_ = snapshot.geometry_key;
         have_frame_ = true;
     }
@@ -107,11 +107,9 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
     for (std::size_t i = known; i < shared; ++i) previous_matrices_[i] = matrices_[motions_[i].first];
     for (std::size_t i = shared; i < previous_matrices_.size(); ++i) {
         // Flattened vertices are relative to the render origin already, and have not moved.
-        const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->world_from_geometry[i - shared];
+        const glm::dmat4 m = motions_[i].identity ? glm::dmat4(1) : snapshot.previous->space_from_geometry[i - shared];
         for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-                previous_matrices_[i].m[row][column] = static_cast<float>(
-                    m[column][row] - (column == 3 && !motions_[i].identity ? snapshot.render_origin[row] : 0.0));
+            for (int column = 0; column < 4; ++column) previous_matrices_[i].m[row][column] = static_cast<float>(m[column][row]);
     }
     previous_camera_key_ = snapshot.previous->camera;
     view_.previous_matrices = previous_matrices_.data();
@@ -165,7 +163,7 @@ void EmbreeScene::build_flat(const SceneSnapshot& snapshot, const std::vector<bo
         if (!flattened[i] || snapshot.instances[i].mask == 0) return;
         const SnapshotInstance& instance = snapshot.instances[i];
         baked_[i] = std::make_unique<PackedGeometry>(scene_.geometries[instance.geometry], fixed_place(snapshot, instance),
-                                                     snapshot.render_origin);
+                                                     snapshot.space());
     });
     for (std::size_t i = 0; i < baked_.size(); ++i) {
         if (!baked_[i]) continue;

@@ -24,8 +24,8 @@ namespace kadr {
 
 /// A scene as Embree and the kernels want it.
 ///
-/// What stands still for the whole shot and is not repeated is flattened: its vertices go relative to the render origin
-/// into one scene without instances, where rays are more than twice as cheap. The rest are instances of meshes in their
+/// What stands still for the whole shot and is not repeated is flattened: its vertices go into the frame's render space,
+/// one scene without instances, where rays are more than twice as cheap. The rest are instances of meshes in their
 /// own coordinates. Geometry is built once a shot, instances when they change.
 class EmbreeScene {
 public:
@@ -101,7 +101,7 @@ private:
     std::vector<bool> flattened_;  ///< of the frame before
     std::vector<std::uint32_t> flat_ids_;  ///< of what is flattened
     StillPart still_;
-    glm::dvec3 flat_origin_{0};
+    RenderSpace flat_space_;
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0, emitter_key_ = 0;
     unsigned requirements_ = 0;

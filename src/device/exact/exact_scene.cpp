@@ -70,9 +70,9 @@ ExactScene::ExactScene(const BoundShot& shot, const ExactMeshes& meshes, const E
 void ExactScene::move_to(double time) {
     const double time_s = std::lerp(snapshot_.open_s, snapshot_.close_s, time);
     place_instances(time_s);
-    camera_ = to_key<double>(camera_at(shot_, time_s), snapshot_.render_origin);
+    camera_ = to_key<double>(camera_at(shot_, time_s), snapshot_.space());
     const double middle_s = 0.5 * (snapshot_.open_s + snapshot_.close_s);
-    std::vector<kernels::LightOf<double>> lights = lights_at(shot_, time_s, middle_s, snapshot_.render_origin);
+    std::vector<kernels::LightOf<double>> lights = lights_at(shot_, time_s, middle_s, snapshot_.space());
     std::vector<LightKeys> each;
     for (std::uint32_t i = 0; i < lights.size(); ++i) each.push_back({i, 1});
     lights_.set(std::move(lights), each);
@@ -81,23 +81,21 @@ void ExactScene::move_to(double time) {
     emitters_.fill(view_.lights);
 }
 
-glm::dmat4 ExactScene::world_from_geometry(const SnapshotInstance& seen, double time_s) const {
+glm::dmat4 ExactScene::space_from_geometry(const SnapshotInstance& seen, double time_s) const {
     const Bindings& bindings = shot_.bindings();
     const Instance instance = bindings.instances[seen.id];
-    glm::dmat4 world = bindings.node_transform(instance.seed->node, instance.copy, time_s) * bindings.copied_from_geometry(shot_.scene(), instance);
-    for (int i = 0; i < 3; ++i) world[3][i] -= snapshot_.render_origin[i];
-    return world;
+    return snapshot_.space().from_world(bindings.node_transform(instance.seed->node, instance.copy, time_s) * bindings.copied_from_geometry(shot_.scene(), instance));
 }
 
 void ExactScene::place_instances(double time_s) {
     std::vector<ExactBox> boxes(instances_.size());
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         const SnapshotInstance& seen = snapshot_.instances[i];
-        const glm::dmat4 world = world_from_geometry(seen, time_s);
-        matrices_[i] = affine(world);
-        placed_[i].object_from_world = glm::inverse(world);
+        const glm::dmat4 place = space_from_geometry(seen, time_s);
+        matrices_[i] = affine(place);
+        placed_[i].object_from_world = glm::inverse(place);
         placed_[i].shown = seen.mask != 0 && meshes_.views[seen.geometry].triangle_count > 0 && is_finite(placed_[i].object_from_world);
-        if (placed_[i].shown) boxes[i] = box_in_world(meshes_.bounds[seen.geometry], world);
+        if (placed_[i].shown) boxes[i] = box_in_world(meshes_.bounds[seen.geometry], place);
     }
     tree_ = BoxTree(boxes);
 }

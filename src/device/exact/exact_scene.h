@@ -49,7 +49,7 @@ public:
 
 private:
     void place_instances(double time_s);
-    glm::dmat4 world_from_geometry(const SnapshotInstance& instance, double time_s) const;
+    glm::dmat4 space_from_geometry(const SnapshotInstance& instance, double time_s) const;
 
     const BoundShot& shot_;
     const ExactMeshes& meshes_;

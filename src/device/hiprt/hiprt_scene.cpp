@@ -35,7 +35,7 @@ void HiprtScene::upload_once(const Scene& scene) {
 
 void HiprtScene::set_frame(const SceneSnapshot& snapshot) {
     const bool same_geometry = have_frame_ && snapshot.geometry_key == geometry_key_ &&
-                               snapshot.render_origin == origin_ && snapshot.settings.cull_backfaces == cull_backfaces_;
+                               snapshot.space() == space_ && snapshot.settings.cull_backfaces == cull_backfaces_;
     // Until all is done there is no frame: whatever fails, the next call starts anew.
     have_frame_ = false;
     cull_backfaces_ = snapshot.settings.cull_backfaces;
@@ -53,7 +53,7 @@ void HiprtScene::set_frame(const SceneSnapshot& snapshot) {
     set_camera(snapshot);
     set_requirements();
     geometry_key_ = snapshot.geometry_key;
-    origin_ = snapshot.render_origin;
+    space_ = snapshot.space();
     have_frame_ = true;
 }
 
@@ -217,11 +217,9 @@ void HiprtScene::set_previous(const SceneSnapshot& snapshot) {
     std::vector<kernels::Affine> matrices(snapshot.instances.size());
     for (std::size_t i = 0; i < shared; ++i) matrices[i] = tables_.matrices[tables_.motions[i].first];  // stands still
     for (std::size_t i = shared; i < matrices.size(); ++i) {
-        const glm::dmat4& m = snapshot.previous->world_from_geometry[i - shared];
+        const glm::dmat4& m = snapshot.previous->space_from_geometry[i - shared];
         for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-                matrices[i].m[row][column] =
-                    static_cast<float>(m[column][row] - (column == 3 ? snapshot.render_origin[row] : 0.0));
+            for (int column = 0; column < 4; ++column) matrices[i].m[row][column] = static_cast<float>(m[column][row]);
     }
     previous_matrices_.set(memory_, uploads_, matrices);
     view_.previous_matrices = previous_matrices_.data();

@@ -104,7 +104,7 @@ private:
     kernels::SceneView view_{};
     bool have_frame_ = false;
     std::uint64_t geometry_key_ = 0;
-    glm::dvec3 origin_{0};
+    RenderSpace space_;
     bool cull_backfaces_ = false, asks_functions_ = false;
     unsigned requirements_ = 0;
     StructureCounts structures_;

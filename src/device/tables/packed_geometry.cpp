@@ -17,9 +17,10 @@ PackedGeometry::PackedGeometry(const GeometryData& source) {
 }
 
 PackedGeometry::PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry,
-                               const glm::dvec3& origin) {
-    const glm::dmat3 linear(world_from_geometry);
-    const glm::dvec3 shift = glm::dvec3(world_from_geometry[3]) - origin;
+                               const RenderSpace& space) {
+    const glm::dmat4 space_from_geometry = space.from_world(world_from_geometry);
+    const glm::dmat3 linear(space_from_geometry);
+    const glm::dvec3 shift(space_from_geometry[3]);
     const bool mirrored = glm::determinant(linear) < 0;
     const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
     allocate(source);

@@ -4,6 +4,7 @@
 
 #include <glm/glm.hpp>
 
+#include "frame/render_origin.h"
 #include "kernels/scene/scene_types.h"
 #include "scene/scene.h"
 
@@ -17,8 +18,8 @@ struct PackedGeometry {
 
     /// In the mesh's own coordinates.
     explicit PackedGeometry(const GeometryData& source);
-    /// Flattened: relative to `origin`.
-    PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry, const glm::dvec3& origin);
+    /// Flattened: in a render space.
+    PackedGeometry(const GeometryData& source, const glm::dmat4& world_from_geometry, const RenderSpace& space);
 
     /// Points to what is here and to what is the source's.
     kernels::Geometry view(const GeometryData& source) const;
