@@ -144,6 +144,7 @@ private:
     void add_render();
     void add_preview();
     void add_check();
+    void add_explain();
     void add_describe();
     void add_smoke();
     void add_compare();
@@ -177,6 +178,7 @@ Parser::Parser() {
     add_render();
     add_preview();
     add_check();
+    add_explain();
     add_describe();
     add_smoke();
     add_compare();
@@ -263,6 +265,16 @@ void Parser::add_check() {
     add_set(app);
     app->add_flag("--verbose", invocation_.verbose, "print the timeline: frames, shutter, tracks, cuts");
     app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_explain() {
+    CLI::App* app = add(Command::explain, "explain", "what a shot needs and why, what is left out of its files, and what it will take",
+                        "kadr explain shots/turntable.yaml --json");
+    add_shot(app);
+    app->add_option("--frames", invocation_.render.overrides.frames, "frames to look at: 1-24x2,40 (default: the shot's)");
+    add_overrides(app);
+    app->add_option("--quality", invocation_.render.overrides.quality, "draft, preview, final or reference: `kadr describe quality`");
+    app->add_flag("--json", invocation_.json, "as a JSON object");
 }
 
 void Parser::add_describe() {

@@ -12,12 +12,12 @@
 
 namespace kadr {
 
-enum class Command { render, preview, check, describe, smoke, compare, measure, info, devices, stress };
+enum class Command { render, preview, check, explain, describe, smoke, compare, measure, info, devices, stress };
 
 /// What the user asked for. Only the members of `command` are filled in.
 struct Invocation {
     Command command = Command::render;
-    RenderOptions render;                        ///< render, preview (its shot and overrides), check (overrides)
+    RenderOptions render;                        ///< render, explain, preview (its shot and overrides), check (overrides)
     PreviewOptions preview;
     SmokeOptions smoke;
     CompareOptions compare;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/explain_text.h"
 #include "cli/reporter.h"
 #include "device/device.h"
 #include "device/gpu_report.h"
@@ -70,6 +71,21 @@ int run_check(const Invocation& invocation) {
         }
     }
     if (!problems.empty()) throw InputError(problems);
+    return kDone;
+}
+
+int run_explain(const Invocation& invocation) {
+    const RenderOptions& render = invocation.render;
+    if (is_reel(render.shot))
+        throw InputError(fmt::format("{} is a reel", render.shot.string()), "expected a shot: kadr explain tells of one of its shots at a time");
+    const Explanation explanation = explain_shot(render.shot, render.overrides, render.device);
+    if (invocation.json) {
+        print(json_line(explanation_json(explanation)));
+        return kDone;
+    }
+    const std::unique_ptr<Reporter> reporter = make_reporter(false, false);
+    for (const Diagnostic& warning : explanation.warnings) reporter->warning(warning);
+    print(explanation_text(explanation));
     return kDone;
 }
 
@@ -296,6 +312,7 @@ int run_devices(const Invocation& invocation) {
 int run_command(const Invocation& invocation) {
     static const std::map<Command, int (*)(const Invocation&)> kCommands = {
         {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
+        {Command::explain, run_explain},
         {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::compare, run_compare},
         {Command::measure, run_measure}, {Command::info, run_info},
         {Command::devices, run_devices}, {Command::stress, run_stress},

@@ -219,10 +219,12 @@ std::vector<kernels::Material> MaterialRig::table(double time_s) const {
     return all;
 }
 
-const kernels::Material& MaterialRig::original_of(std::uint32_t material) const {
+int MaterialRig::source_of(std::uint32_t material) const {
     const Own* own = own_at(material);
-    return scene_->materials[own ? index(own->original) : material];
+    return own ? own->original : static_cast<int>(material);
 }
+
+const kernels::Material& MaterialRig::original_of(std::uint32_t material) const { return scene_->materials[index(source_of(material))]; }
 
 bool MaterialRig::may_emit(std::uint32_t material) const { return original_of(material).unlit || may_light(material); }
 

@@ -26,6 +26,9 @@ public:
     /// The place in the table of a material, as material_of has it, in a copy that plays its clips with an offset.
     std::uint32_t material_in_copy(std::uint32_t material, double clip_offset_s) const;
 
+    /// Index into Scene::materials of what a material of the table is, or was made from.
+    int source_of(std::uint32_t material) const;
+
     /// The whole table at a time; empty where the scene's own serves.
     std::vector<kernels::Material> table(double time_s) const;
     /// Whether a material of the table ever sends out light.

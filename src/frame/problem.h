@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -9,5 +10,15 @@ namespace kadr {
 /// A diagnostic at a place of the shot file, with the line that it speaks of where the file can be read.
 Diagnostic problem_at(const SourceLocation& where, std::string found, std::string expected);
 Diagnostic warning_at(const SourceLocation& where, std::string found, std::string expected);
+
+/// Runs a step and keeps what it complains about, so that all problems of a shot come at once.
+template <class Step>
+void collect(std::vector<Diagnostic>& problems, Step step) {
+    try {
+        step();
+    } catch (const InputError& error) {
+        problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+}
 
 }  // namespace kadr

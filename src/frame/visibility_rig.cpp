@@ -11,9 +11,10 @@ namespace {
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 bool ever_off(const SwitchTrack& track) {
-    for (const Key<double>& key : track.keys)
-        if (key.value < 0.5) return true;
-    return false;
+    return std::any_of(track.keys.begin(), track.keys.end(), [](const Key<double>& key) { return key.value < 0.5; });
+}
+bool is_ever_on(const SwitchTrack& track) {
+    return std::any_of(track.keys.begin(), track.keys.end(), [](const Key<double>& key) { return key.value >= 0.5; });
 }
 
 }  // namespace
@@ -65,6 +66,15 @@ void VisibilityRig::add_tree(const Scene& scene, const ByShot& by_shot, const Pr
 bool VisibilityRig::Switch::on(double time_s, double clip_offset_s) const {
     if (by_shot) return is_on(*by_shot, time_s);
     return by_clip ? is_on(std::get<LayeredTrack<double>>(by_clip->track), rest, *by_clip->layers, time_s, clip_offset_s) : rest;
+}
+
+/// Clips count as if they showed it some time.
+bool VisibilityRig::Switch::ever_on() const { return by_shot ? is_ever_on(*by_shot) : by_clip || rest; }
+
+bool VisibilityRig::never_shows(int node) const {
+    for (int nearest = switch_of_[index(node)]; nearest >= 0; nearest = switches_[index(nearest)].above)
+        if (!switches_[index(nearest)].ever_on()) return true;
+    return false;
 }
 
 VisibilityRig::States VisibilityRig::at(double time_s) const {

@@ -22,6 +22,9 @@ public:
     /// Whether a node, or something above it, is ever hidden.
     bool ever_hides(int node) const { return switch_of_[static_cast<std::size_t>(node)] >= 0; }
 
+    /// Whether it, or something above it, is hidden at all times.
+    bool never_shows(int node) const;
+
     /// The states of all switches at one time.
     class States {
     public:
@@ -48,6 +51,7 @@ private:
         std::optional<DrivenProperty> by_clip;
         const SwitchTrack* by_shot = nullptr;  ///< wins over clips and file
         bool on(double time_s, double clip_offset_s) const;
+        bool ever_on() const;
         void add_discontinuities(double begin_s, double end_s, double clip_offset_s, std::vector<double>& times) const;
     };
     int entry_switch(int entry, const SceneSpec& spec);

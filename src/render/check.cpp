@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "frame/problem.h"
 #include "output/encoder.h"
 #include "output/image_io.h"
 #include "render/clip_report.h"
@@ -13,16 +14,6 @@
 
 namespace kadr {
 namespace {
-
-/// Runs one group of checks; its problems join those of the others instead of hiding them.
-template <class Check>
-void collect(std::vector<Diagnostic>& problems, const Check& check) {
-    try {
-        check();
-    } catch (const InputError& error) {
-        problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
-}
 
 /// What the shot says alone, or with its scenes where they could be loaded.
 struct Bound {
@@ -38,7 +29,7 @@ Bound bind_names(const Shot& shot, bool verbose, std::vector<Diagnostic>& proble
     collect(problems, [&] {
         LoadOptions options;
         options.decode_textures = false;
-        const LoadedShot loaded(shot, options);
+        const LoadedShot loaded(shot, options, Reading::everything);
         bound = {loaded.bound().timing().frames, {loaded.warnings(), verbose ? details_of(loaded) : std::string()}};
     });
     return bound;

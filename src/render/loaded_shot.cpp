@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/scene_files.h"
+
 namespace kadr {
 namespace {
 
@@ -12,10 +14,36 @@ LoadOptions with_limits(LoadOptions options, const RenderSpec& render) {
     return options;
 }
 
+Scene load_needed(const Shot& shot, const LoadOptions& options, std::vector<Unread>& left_out) {
+    SceneFiles files(scene_requests(shot));
+    ShotNeeds needs = needs_of(shot, files.outline());
+    left_out = std::move(needs.left_out);
+    return std::move(files).load(needs.scene, options);
+}
+
+Scene load_everything(const Shot& shot, const LoadOptions& options) {
+    std::vector<SceneFileRequest> requests = scene_requests(shot);
+    for (SceneFileRequest& request : requests) request.clips = {};
+    return load_scene(requests, options);
+}
+
+ClipChoice clips_of(const SceneSpec& scene) {
+    ClipChoice choice{false, {}, {}};
+    for (const ClipLayer& layer : scene.layers) {
+        if (layer.clips == ClipLayer::Clips::all) choice.all = true;
+        if (layer.clips != ClipLayer::Clips::one) continue;
+        if (layer.clip_index >= 0) choice.numbers.push_back(layer.clip_index);
+        else choice.names.push_back(layer.clip_name);
+    }
+    return choice;
+}
+
 }  // namespace
 
-LoadedShot::LoadedShot(Shot shot, const LoadOptions& options)
-    : shot_(std::move(shot)), scene_(load_scene(scene_requests(shot_), with_limits(options, shot_.render))), bound_(shot_, scene_) {}
+LoadedShot::LoadedShot(Shot shot, const LoadOptions& options, Reading reading)
+    : shot_(std::move(shot)),
+      scene_(reading == Reading::needed ? load_needed(shot_, with_limits(options, shot_.render), left_out_) : load_everything(shot_, with_limits(options, shot_.render))),
+      bound_(shot_, scene_) {}
 
 std::vector<Diagnostic> LoadedShot::warnings() const {
     std::vector<Diagnostic> all = shot_.warnings;
@@ -26,7 +54,7 @@ std::vector<Diagnostic> LoadedShot::warnings() const {
 
 std::vector<SceneFileRequest> scene_requests(const Shot& shot) {
     std::vector<SceneFileRequest> requests;
-    for (const SceneSpec& scene : shot.scenes) requests.push_back({scene.id, scene.gltf, scene.where});
+    for (const SceneSpec& scene : shot.scenes) requests.push_back({scene.id, scene.gltf, scene.where, clips_of(scene)});
     return requests;
 }
 

@@ -20,7 +20,7 @@ constexpr VideoKeys kReelKeys{"size", "fps"};
 
 /// Runs one group of checks; its problems join those of the others instead of hiding them, each once.
 template <class Check>
-void collect(std::vector<Diagnostic>& problems, const Check& check) {
+void collect_once(std::vector<Diagnostic>& problems, const Check& check) {
     try {
         check();
     } catch (const InputError& error) {
@@ -35,7 +35,7 @@ void collect(std::vector<Diagnostic>& problems, const Check& check) {
 template <class Check>
 void collect_with_lines(std::vector<Diagnostic>& problems, const Check& check) {
     std::vector<Diagnostic> found;
-    collect(found, check);
+    collect_once(found, check);
     for (const Diagnostic& problem : found) problems.push_back(problem_at(problem.where, problem.found, problem.expected));
 }
 
@@ -70,15 +70,15 @@ private:
     void bind(std::size_t index) {
         const ReelEntry& entry = plan_.reel.entries[index];
         BoundEntry bound{&entry, {}, fmt::format("shots.{}", index)};
-        collect(problems_, [&] {
+        collect_once(problems_, [&] {
             LoadOptions options;
             options.decode_textures = false;
-            const LoadedShot loaded(entry.shot, options);
+            const LoadedShot loaded(entry.shot, options, Reading::everything);
             bound.frames = loaded.bound().timing().frames;
             add_warnings(loaded.warnings());
         });
         if (entry.shot.environment.image)
-            collect(problems_, [&] { image_io().read_metadata(*entry.shot.environment.image); });
+            collect_once(problems_, [&] { image_io().read_metadata(*entry.shot.environment.image); });
         bound_.push_back(std::move(bound));
     }
 

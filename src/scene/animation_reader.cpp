@@ -274,6 +274,15 @@ private:
     std::vector<std::string>& unknown_;
 };
 
+/// A clip that nothing plays.
+Clip named_clip(const GltfDocument& document, std::size_t index) {
+    Clip clip;
+    clip.name = document.model().animations[index].name;
+    clip.channel_count = static_cast<int>(document.json()["animations"][index]["channels"].size());
+    clip.read = false;
+    return clip;
+}
+
 /// One warning for a file, however many of its pointers name what Kadr does not animate.
 void warn_of_pointers(GltfDocument& document, std::vector<std::string> pointers) {
     constexpr std::size_t kMostListed = 6;
@@ -288,10 +297,11 @@ void warn_of_pointers(GltfDocument& document, std::vector<std::string> pointers)
 
 }  // namespace
 
-std::vector<Clip> read_animations(GltfDocument& document) {
+std::vector<Clip> read_animations(GltfDocument& document, const ClipChoice& choice) {
     std::vector<Clip> clips;
     std::vector<std::string> unknown;
-    for (std::size_t i = 0; i < document.model().animations.size(); ++i) clips.push_back(AnimationReader(document, i, unknown).read());
+    for (std::size_t i = 0; i < document.model().animations.size(); ++i)
+        clips.push_back(choice.holds(document.model().animations[i].name, static_cast<int>(i)) ? AnimationReader(document, i, unknown).read() : named_clip(document, i));
     warn_of_pointers(document, std::move(unknown));
     return clips;
 }

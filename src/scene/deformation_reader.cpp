@@ -121,21 +121,6 @@ glm::dmat4 bind_matrix(const GltfDocument& document, const std::string& pointer,
     return matrix;
 }
 
-std::vector<glm::dmat4> read_bind_matrices(const GltfDocument& document, std::size_t index) {
-    const tinygltf::Skin& skin = document.model().skins[index];
-    if (skin.inverseBindMatrices < 0) return std::vector<glm::dmat4>(skin.joints.size(), glm::dmat4(1));
-    const tinygltf::Accessor& accessor = accessor_of(document, skin.inverseBindMatrices);
-    const std::string pointer = fmt::format("/skins/{}/inverseBindMatrices", index);
-    if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-        document.fail(pointer, "is " + describe_accessor(accessor), "expected MAT4 of float");
-    if (accessor.count < skin.joints.size())
-        document.fail(pointer, fmt::format("has {} matrices for {} joints", accessor.count, skin.joints.size()), "expected one for each joint");
-    const std::vector<float> values = read_floats(document, skin.inverseBindMatrices);
-    std::vector<glm::dmat4> matrices;
-    for (std::size_t j = 0; j < skin.joints.size(); ++j) matrices.push_back(bind_matrix(document, pointer, &values[16 * j], j));
-    return matrices;
-}
-
 /// From a root down to the node.
 std::vector<int> chain_to(const std::vector<Node>& nodes, int node) {
     std::vector<int> chain;
@@ -156,6 +141,21 @@ int common_root(const std::vector<Node>& nodes, const std::vector<int>& joints) 
 }
 
 }  // namespace
+
+std::vector<glm::dmat4> read_bind_matrices(const GltfDocument& document, std::size_t index) {
+    const tinygltf::Skin& skin = document.model().skins[index];
+    if (skin.inverseBindMatrices < 0) return std::vector<glm::dmat4>(skin.joints.size(), glm::dmat4(1));
+    const tinygltf::Accessor& accessor = accessor_of(document, skin.inverseBindMatrices);
+    const std::string pointer = fmt::format("/skins/{}/inverseBindMatrices", index);
+    if (accessor.type != TINYGLTF_TYPE_MAT4 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        document.fail(pointer, "is " + describe_accessor(accessor), "expected MAT4 of float");
+    if (accessor.count < skin.joints.size())
+        document.fail(pointer, fmt::format("has {} matrices for {} joints", accessor.count, skin.joints.size()), "expected one for each joint");
+    const std::vector<float> values = read_floats(document, skin.inverseBindMatrices);
+    std::vector<glm::dmat4> matrices;
+    for (std::size_t j = 0; j < skin.joints.size(); ++j) matrices.push_back(bind_matrix(document, pointer, &values[16 * j], j));
+    return matrices;
+}
 
 SkinWeights read_skin_weights(const GltfDocument& document, const tinygltf::Primitive& primitive, const VertexSource& vertices,
                               std::vector<Diagnostic>& warnings) {
@@ -225,7 +225,6 @@ std::vector<Skin> read_skins(const GltfDocument& document, const std::vector<Nod
         if (skin.joints.empty()) document.fail(fmt::format("/skins/{}/joints", i), "is empty", "expected at least one joint");
         if (skin.joints.size() > std::numeric_limits<std::uint16_t>::max() + std::size_t{1})
             document.fail(fmt::format("/skins/{}/joints", i), fmt::format("has {} joints", skin.joints.size()), "expected at most 65536");
-        skin.inverse_bind = read_bind_matrices(document, i);
         skin.root = common_root(nodes, skin.joints);
         skins.push_back(std::move(skin));
     }

@@ -29,9 +29,13 @@ std::vector<MorphTarget> read_morph_targets(const GltfDocument& document, const 
                                             double scale, std::vector<Diagnostic>& warnings);
 
 /// The skins of a file; nodes as glTF numbers them. `skeleton` is ignored, as the specification says (3.7.3.1). Joints of
-/// several trees have no root: -1.
-/// @throws InputError  for too few matrices, matrices that are not finite or not affine
+/// several trees have no root: -1. Without matrices.
+/// @throws InputError  for a skin without joints, or with too many
 std::vector<Skin> read_skins(const GltfDocument& document, const std::vector<Node>& nodes);
+
+/// Skin::inverse_bind of a skin.
+/// @throws InputError  for too few matrices, matrices that are not finite or not affine
+std::vector<glm::dmat4> read_bind_matrices(const GltfDocument& document, std::size_t skin);
 
 /// Morph weights at rest of every node with a mesh: the node's, else the mesh's, else 0.
 /// @throws InputError  for another number of weights than the mesh has targets, or primitives that disagree

@@ -47,11 +47,11 @@ public:
     Builder(const GltfDocument& document, std::size_t mesh, std::size_t primitive)
         : document_(document), primitive_(document.model().meshes[mesh].primitives[primitive]),
           pointer_(fmt::format("/meshes/{}/primitives/{}", mesh, primitive)) {
-        const std::string& name = document.model().meshes[mesh].name;
-        result_.data.name = fmt::format("{}/{}", name.empty() ? fmt::format("mesh {}", mesh) : name, primitive);
+        result_.data.name = geometry_name(document, mesh, primitive);
     }
 
-    BuiltGeometry build(int normal_uv_set) {
+    BuiltGeometry build(int normal_uv_set, const GeometryNeeds& needs) {
+        if (!needs.tangents) normal_uv_set = -1;
         if (!is_triangles() || !has_positions()) return std::move(result_);
         GeometryData& g = result_.data;
         read("POSITION", 0, g.positions);
@@ -62,16 +62,16 @@ public:
             return std::move(result_);
         }
         read("NORMAL", 1, g.normals);
-        read("TEXCOORD_0", 3, g.uv[0]);
-        read("TEXCOORD_1", 3, g.uv[1]);
-        read_colors();
+        if (needs.uv[0] || normal_uv_set == 0) read("TEXCOORD_0", 3, g.uv[0]);
+        if (needs.uv[1] || normal_uv_set == 1) read("TEXCOORD_1", 3, g.uv[1]);
+        if (needs.colors) read_colors();
         repair_normals();
         normalise_positions();
         VertexSource vertices{pointer_, g.positions.size(), {}};
         if (g.normals.empty() && normal_uv_set >= 0) vertices.source = g.indices;  // tangents of flat meshes unshare the vertices
         build_tangents(normal_uv_set);
-        g.skin = read_skin_weights(document_, primitive_, vertices, result_.warnings);
-        g.targets = read_morph_targets(document_, primitive_, vertices, g.scale, result_.warnings);
+        if (needs.skin) g.skin = read_skin_weights(document_, primitive_, vertices, result_.warnings);
+        if (needs.targets) g.targets = read_morph_targets(document_, primitive_, vertices, g.scale, result_.warnings);
         return std::move(result_);
     }
 
@@ -284,8 +284,30 @@ private:
 
 }  // namespace
 
-BuiltGeometry build_geometry(const GltfDocument& document, std::size_t mesh, std::size_t primitive, int normal_uv_set) {
-    return Builder(document, mesh, primitive).build(normal_uv_set);
+GeometryOutline outline_of(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
+    const tinygltf::Primitive& source = document.model().meshes[mesh].primitives[primitive];
+    const auto has = [&](const char* name) { return source.attributes.count(name) > 0; };
+    const auto count_of = [&](int accessor) { return document.model().accessors[static_cast<std::size_t>(accessor)].count; };
+    GeometryOutline outline;
+    if (has("POSITION")) outline.vertices = count_of(source.attributes.at("POSITION"));
+    outline.corners = source.indices >= 0 ? count_of(source.indices) : outline.vertices;
+    if (source.mode > TINYGLTF_MODE_TRIANGLES) outline.corners = 3 * (std::max<std::size_t>(outline.corners, 2) - 2);
+    outline.normals = has("NORMAL");
+    outline.tangents = has("TANGENT");
+    outline.colors = has("COLOR_0");
+    outline.skin = has("JOINTS_0");
+    outline.uv = {has("TEXCOORD_0"), has("TEXCOORD_1")};
+    outline.targets = source.targets.size();
+    return outline;
+}
+
+std::string geometry_name(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
+    const std::string& name = document.model().meshes[mesh].name;
+    return fmt::format("{}/{}", name.empty() ? fmt::format("mesh {}", mesh) : name, primitive);
+}
+
+BuiltGeometry build_geometry(const GltfDocument& document, std::size_t mesh, std::size_t primitive, int normal_uv_set, const GeometryNeeds& needs) {
+    return Builder(document, mesh, primitive).build(normal_uv_set, needs);
 }
 
 }  // namespace kadr

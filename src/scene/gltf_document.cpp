@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 
 #include "scene/accessor.h"
 #include "scene/gltf_schema.h"
@@ -16,8 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uint64_t kLargestFile = 4ull << 30;          // bytes; GLB cannot be larger
-constexpr std::uint64_t kLargestJson = 256ull << 20;        // without a GLB chunk of its own, data URIs included
+constexpr std::uint64_t kLargestJson = 256ull << 20;        // bytes; without a GLB chunk of its own, data URIs included
 constexpr std::uint64_t kLargestZeros = 1ull << 30;         // bytes of accessors that have no buffer view
 constexpr int kDeepestJson = 64;                            // glTF itself needs 9 levels, extensions a few more
 constexpr std::string_view kDamaged = "the file is damaged; export it anew";
@@ -39,6 +37,8 @@ constexpr Replacement kReplacements[] = {
     {"EXT_texture_avif", "AVIF textures", "export the textures as PNG or JPEG"},
     {"MSFT_texture_dds", "DDS textures", "export the textures as PNG or JPEG"},
 };
+
+bool is_supported(const std::string& extension) { return std::find(std::begin(kSupported), std::end(kSupported), extension) != std::end(kSupported); }
 
 bool contains(const Json& object, std::string_view key) { return object.is_object() && object.find(key) != object.end(); }
 
@@ -112,38 +112,21 @@ bool is_index_type(int component_type) {
 
 }  // namespace
 
-Bytes read_file(const std::filesystem::path& path, const Diagnostic& on_failure) {
-    const auto refuse = [&](const std::string& why) {
-        Diagnostic diagnostic = on_failure;
-        diagnostic.found += ": " + why;
-        throw InputError(std::move(diagnostic));
-    };
-    std::error_code failed;
-    const auto status = std::filesystem::status(path, failed);
-    if (!std::filesystem::exists(status)) refuse("there is no such file");
-    if (!std::filesystem::is_regular_file(status)) refuse("it is not a regular file");
-    const std::uintmax_t size = std::filesystem::file_size(path, failed);
-    if (failed) refuse(failed.message());
-    if (size >= kLargestFile) refuse(fmt::format("it has {} bytes; the limit is 4 GiB", size));
-    Bytes bytes(size);
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)) && size > 0) refuse("it cannot be read");
-    return bytes;
-}
-
 GltfDocument::GltfDocument(const std::filesystem::path& path, const SourceLocation& asked_from)
     : file_(path.string()), folder_(path.parent_path()) {
     Diagnostic unreadable;
     unreadable.where = asked_from;
     unreadable.found = fmt::format("cannot read {}", file_);
     unreadable.expected = "expected a glTF 2.0 file (.gltf or .glb); paths are relative to the shot file";
-    bytes_ = read_file(path, unreadable);
-    total_bytes_ = bytes_.size();
-    parse(split_container());
+    container_ = MappedFile(path, unreadable);
+    total_bytes_ = container_.bytes().size();
+    text_ = split_container();
+    parse(std::string_view(reinterpret_cast<const char*>(text_.data()), text_.size()));
     check_version();
     check_extensions();
     if (auto problems = check_schema(json_, file_); !problems.empty()) throw InputError(std::move(problems));
     load_model();
+    asked_ = std::make_unique<std::atomic<bool>[]>(model_.bufferViews.size());
     load_buffers();
     check_views();
     check_accessors();
@@ -171,20 +154,27 @@ bool GltfDocument::uses(std::string_view extension) const {
     return std::find(used.begin(), used.end(), extension) != used.end();
 }
 
+std::vector<std::string> GltfDocument::extensions(bool followed) const {
+    std::vector<std::string> names;
+    for (const std::string& name : strings(json_, "extensionsUsed"))
+        if (is_supported(name) == followed && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    return names;
+}
+
 /// The JSON text; for GLB also finds the binary chunk.  Source: glTF 2.0 specification, section 4 (GLB).
-std::string_view GltfDocument::split_container() {
+ByteView GltfDocument::split_container() {
     constexpr std::size_t kHeader = 12, kChunkHeader = 8;
     constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
-    const auto text = [](ByteView bytes) { return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()); };
-    if (bytes_.size() < 4 || std::memcmp(bytes_.data(), "glTF", 4) != 0) return text(bytes_);
-    if (bytes_.size() < kHeader + kChunkHeader)
-        fail({}, fmt::format("the GLB file ends after {} bytes", bytes_.size()), "expected a header and a JSON chunk; the file is truncated");
-    if (const std::uint32_t version = little_endian(bytes_, 4); version != 2)
+    const ByteView bytes = container_.bytes();
+    if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return bytes;
+    if (bytes.size() < kHeader + kChunkHeader)
+        fail({}, fmt::format("the GLB file ends after {} bytes", bytes.size()), "expected a header and a JSON chunk; the file is truncated");
+    if (const std::uint32_t version = little_endian(bytes, 4); version != 2)
         fail({}, fmt::format("is GLB version {}", version), "expected version 2; convert the file to glTF 2.0");
-    const std::uint32_t length = little_endian(bytes_, 8);
-    if (length > bytes_.size())
-        fail({}, fmt::format("the GLB header says {} bytes, the file has {}", length, bytes_.size()), "the file is truncated; copy or export it anew");
-    ByteView rest = ByteView(bytes_).subspan(0, length);
+    const std::uint32_t length = little_endian(bytes, 8);
+    if (length > bytes.size())
+        fail({}, fmt::format("the GLB header says {} bytes, the file has {}", length, bytes.size()), "the file is truncated; copy or export it anew");
+    ByteView rest = bytes.subspan(0, length);
     rest = rest.subspan(std::min<std::size_t>(kHeader, rest.size()));
     ByteView document;
     for (int chunk = 0; rest.size() >= kChunkHeader; ++chunk) {
@@ -197,11 +187,11 @@ std::string_view GltfDocument::split_container() {
         if (chunk == 1 && type == kBinary) binary_chunk_ = rest.subspan(0, size);
         rest = rest.subspan(size);
     }
-    return text(document);
+    return document;
 }
 
 void GltfDocument::parse(std::string_view text) {
-    if (text.empty()) fail({}, bytes_.empty() ? "is empty" : "holds no JSON", "expected a glTF 2.0 file (.gltf or .glb)");
+    if (text.empty()) fail({}, container_.bytes().empty() ? "is empty" : "holds no JSON", "expected a glTF 2.0 file (.gltf or .glb)");
     if (text.size() > kLargestJson && !binary_chunk_.empty())
         fail({}, fmt::format("holds {} bytes of JSON", text.size()), "expected at most 256 MiB");
     if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
@@ -235,7 +225,6 @@ void GltfDocument::check_version() const {
 
 void GltfDocument::check_extensions() {
     const auto required = strings(json_, "extensionsRequired");
-    const auto is_supported = [](const std::string& name) { return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported); };
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (is_supported(required[i])) continue;
         const std::string pointer = fmt::format("/extensionsRequired/{}", i);
@@ -244,12 +233,8 @@ void GltfDocument::check_extensions() {
                 fail(pointer, fmt::format("is {}: {} are not supported yet", required[i], replacement.what), std::string(replacement.remedy));
         fail(pointer, fmt::format("is {}, which Kadr does not support", required[i].substr(0, 80)), "export the file without requiring that extension");
     }
-    std::vector<std::string> seen;
-    for (const std::string& name : strings(json_, "extensionsUsed")) {
-        if (is_supported(name) || std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
-        seen.push_back(name);
+    for (const std::string& name : extensions(false))
         warnings.push_back(warning("/extensionsUsed", fmt::format("names {}, which is not supported and has no effect", name)));
-    }
 }
 
 void GltfDocument::load_model() {
@@ -291,20 +276,18 @@ void GltfDocument::load_model() {
     });
 }
 
-ByteView GltfDocument::resolve(const std::string& uri, std::string_view pointer, Bytes& storage) const {
+GltfDocument::Resource GltfDocument::resolve(const std::string& uri, std::string_view pointer) const {
     if (uri.substr(0, 5) == "data:") {
         auto decoded = decode_data_uri(uri);
         if (!decoded) fail(pointer, "is not a well-formed data URI", "expected \"data:...;base64,\" and base64 text");
-        storage = std::move(*decoded);
-        return storage;
+        return {{}, std::move(*decoded)};
     }
     const auto relative = path_within_folder(uri);
     if (!relative)
         fail(pointer, fmt::format("is \"{}\"", uri.substr(0, 200)), "expected a relative path that stays in the asset's folder; copy the file next to the asset");
     Diagnostic unreadable = warning(pointer, fmt::format("is \"{}\"", uri.substr(0, 200)), "expected a readable file next to the asset");
     unreadable.warning = false;
-    storage = read_file(folder_ / *relative, unreadable);
-    return storage;
+    return {MappedFile(folder_ / *relative, unreadable), {}};
 }
 
 void GltfDocument::load_buffers() {
@@ -318,7 +301,8 @@ void GltfDocument::load_buffers() {
         const std::string pointer = fmt::format("/buffers/{}", i);
         const auto length = unsigned_or(list[i], "byteLength", 0);
         if (const Json* uri = member(list[i], "uri")) {
-            buffers_[i] = resolve(uri->get_ref<const std::string&>(), pointer + "/uri", buffer_storage_[i]);
+            buffer_storage_[i] = resolve(uri->get_ref<const std::string&>(), pointer + "/uri");
+            buffers_[i] = buffer_storage_[i].bytes();
             total_bytes_ += buffers_[i].size();
         } else if (i == 0 && !binary_chunk_.empty()) {
             buffers_[i] = binary_chunk_;
@@ -348,7 +332,7 @@ void GltfDocument::check_views() const {
 void GltfDocument::check_accessors() const {
     std::uint64_t zeros = 0;
     const auto fits = [&](const std::string& pointer, int view_index, std::size_t offset, std::size_t stride, std::size_t size, std::size_t count) {
-        const std::uint64_t available = view(view_index).size();
+        const std::uint64_t available = bytes_of(view_index).size();
         const std::uint64_t last = (static_cast<std::uint64_t>(count) - 1) * stride;  // at most 2^31 * 252
         if (offset > available || last + size > available - offset)
             fail(pointer, fmt::format("needs {} bytes from offset {}, buffer view {} has {}", last + size, offset, view_index, available),
@@ -383,6 +367,11 @@ void GltfDocument::check_accessors() const {
 }
 
 ByteView GltfDocument::view(int index) const {
+    asked_[static_cast<std::size_t>(index)].store(true, std::memory_order_relaxed);
+    return bytes_of(index);
+}
+
+ByteView GltfDocument::bytes_of(int index) const {
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
     return buffers_[static_cast<std::size_t>(view.buffer)].subspan(view.byteOffset, view.byteLength);
 }
@@ -391,9 +380,14 @@ ByteView GltfDocument::image(std::size_t index) {
     if (!images_[index].empty()) return images_[index];
     const Json& image = json_["images"][index];
     const std::string pointer = fmt::format("/images/{}", index);
-    if (const Json* uri = member(image, "uri")) images_[index] = resolve(uri->get_ref<const std::string&>(), pointer + "/uri", image_storage_[index]);
-    else if (const Json* stored = member(image, "bufferView")) images_[index] = view(stored->get<int>());
-    else fail(pointer, "has neither uri nor bufferView", std::string(kDamaged));
+    if (const Json* uri = member(image, "uri")) {
+        image_storage_[index] = resolve(uri->get_ref<const std::string&>(), pointer + "/uri");
+        images_[index] = image_storage_[index].bytes();
+    } else if (const Json* stored = member(image, "bufferView")) {
+        images_[index] = view(stored->get<int>());
+    } else {
+        fail(pointer, "has neither uri nor bufferView", std::string(kDamaged));
+    }
     if (images_[index].empty()) fail(pointer, "is empty", "expected a PNG or JPEG image");
     return images_[index];
 }
@@ -409,9 +403,10 @@ std::string GltfDocument::image_name(std::size_t index) const {
 Hash GltfDocument::content() const {
     Hasher hasher;
     const auto add = [&](ByteView bytes) { hasher.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())); };
-    add(bytes_);
-    for (const Bytes& buffer : buffer_storage_) add(buffer);
-    for (const Bytes& image : image_storage_) add(image);
+    add(text_);
+    for (std::size_t i = 0; i < model_.bufferViews.size(); ++i)
+        if (asked_[i].load(std::memory_order_relaxed)) add(bytes_of(static_cast<int>(i)));
+    for (const Resource& image : image_storage_) add(image.bytes());
     return hasher.finish();
 }
 

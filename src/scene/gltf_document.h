@@ -1,9 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,16 +14,16 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "scene/mapped_file.h"
 
 namespace kadr {
 
 using Bytes = std::vector<std::uint8_t>;
-using ByteView = std::span<const std::uint8_t>;
 
 /// A glTF file whose structure has been checked: properties have their types and ranges, indices name existing objects,
 /// buffer views lie within their buffers and accessors within their views, extensions are known. tinygltf maps the JSON
 /// to `model`; buffers and images are read by Kadr itself (limits, no path outside the asset's folder, no copies), so
-/// model.buffers and model.images stay empty.
+/// model.buffers and model.images stay empty. Of files only what is asked for is read.
 class GltfDocument {
 public:
     /// @throws InputError
@@ -35,7 +36,10 @@ public:
     const nlohmann::json& json() const { return json_; }
     bool uses(std::string_view extension) const;
 
-    /// The bytes of a buffer view.
+    /// Names in `extensionsUsed`, each once: those that Kadr follows, or the others.
+    std::vector<std::string> extensions(bool followed) const;
+
+    /// The bytes of a buffer view; may be called from several threads.
     ByteView view(int buffer_view) const;
     std::size_t image_count() const { return json_.contains("images") ? json_["images"].size() : 0; }
     /// The encoded bytes of an image; may be called from several threads for different images.
@@ -45,7 +49,7 @@ public:
 
     /// Bytes of the file and all its buffers: what a sane scene is in proportion to.
     std::size_t total_bytes() const { return total_bytes_; }
-    /// Hash of the file, its buffers and the images that were asked for.
+    /// Hash of the JSON, and of the buffer views and images that were asked for.
     Hash content() const;
 
     /// "file: error: /accessors/3/count is 0".  `found` follows the pointer.
@@ -54,7 +58,7 @@ public:
     std::vector<Diagnostic> warnings;
 
 private:
-    std::string_view split_container();
+    ByteView split_container();
     void parse(std::string_view text);
     void check_version() const;
     void check_extensions();
@@ -62,20 +66,25 @@ private:
     void check_views() const;
     void check_accessors() const;
     void load_model();
-    ByteView resolve(const std::string& uri, std::string_view pointer, Bytes& storage) const;
+    /// What a URI names: a file, or the bytes that stand in it.
+    struct Resource {
+        MappedFile file;
+        Bytes decoded;
+        ByteView bytes() const { return decoded.empty() ? file.bytes() : ByteView(decoded); }
+    };
+    Resource resolve(const std::string& uri, std::string_view pointer) const;
+    ByteView bytes_of(int buffer_view) const;
 
     std::string file_;
     std::filesystem::path folder_;
-    Bytes bytes_;
-    ByteView binary_chunk_;
+    MappedFile container_;
+    ByteView text_, binary_chunk_;  ///< of the container
     nlohmann::json json_;
     tinygltf::Model model_;
-    std::vector<Bytes> buffer_storage_, image_storage_;
+    std::vector<Resource> buffer_storage_, image_storage_;
     std::vector<ByteView> buffers_, images_;
+    std::unique_ptr<std::atomic<bool>[]> asked_;  ///< [buffer view]
     std::size_t total_bytes_ = 0;
 };
-
-/// A whole regular file. @throws InputError saying what `described_as` cannot be read and why
-Bytes read_file(const std::filesystem::path& path, const Diagnostic& on_failure);
 
 }  // namespace kadr

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kLongestSide = 32768;
 constexpr std::uint64_t kMostPixels = 1ull << 28;
+constexpr std::size_t kPngDepth = 24;                  // IHDR: width, height, bits a channel
 constexpr std::uint64_t kMostPixelsAByte = 1u << 13;  // deflate packs 1032:1, and PNG packs 8 pixels into a byte
 
 /// Formats that are recognised only to be named.
@@ -78,7 +79,7 @@ ImageHeader read_image_header(const GltfDocument& document, const std::string& p
         document.fail(pointer, fmt::format("has {} x {} pixels", width, height), fmt::format("expected 1 to {} a side and at most 2^28 in all", kLongestSide));
     if (pixels > kMostPixelsAByte * bytes.size())
         document.fail(pointer, fmt::format("says {} x {} pixels but has {} bytes", width, height, bytes.size()), "the image is truncated; save it anew");
-    return {static_cast<int>(width), static_cast<int>(height)};
+    return {static_cast<int>(width), static_cast<int>(height), png && bytes[kPngDepth] == 16 ? 16 : 8};
 }
 
 DecodedImage decode_image(const GltfDocument& document, const std::string& pointer, ByteView bytes) {

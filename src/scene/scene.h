@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -144,6 +145,7 @@ struct Clip {
     double begin_s = 0, end_s = 0;
     std::vector<NodeChannels> channels;
     int channel_count = 0;  ///< in the file, with those that are ignored
+    bool read = true;       ///< false: known by name alone, because nothing plays it
     std::vector<PropertyChannel> properties = {};  ///< what the clip drives beside nodes' transforms
     /// Whether any of its channels means something here.
     bool animates() const { return !channels.empty() || !properties.empty(); }
@@ -159,6 +161,9 @@ struct SceneFile {
     int first_clip = 0, clip_count = 0;
     int first_material = 0, material_count = 0;  ///< entries of the same file share them
     std::vector<std::string> variants;           ///< names; KHR_materials_variants
+    std::vector<std::string> extensions;         ///< that it names and Kadr follows
+    std::vector<std::string> ignored_extensions; ///< that it names and Kadr does not know
+    std::vector<std::string> unused_images;      ///< that no material of a mesh names
 };
 
 /// Everything the glTF files of a shot hold, merged into one index space; built once a shot.
@@ -178,20 +183,31 @@ struct Scene {
     std::vector<Diagnostic> warnings;
 };
 
+/// The clips of a file that are read; the others are known by name alone.
+struct ClipChoice {
+    bool all = true;
+    std::vector<std::string> names;
+    std::vector<int> numbers;   ///< as the file numbers them
+    bool holds(const std::string& name, int number) const {
+        return all || std::find(names.begin(), names.end(), name) != names.end() || std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+    }
+};
+
 /// What a shot asks for: which file, under which id. `where` is the place in the shot file, for messages.
 struct SceneFileRequest {
     std::string id;
     std::filesystem::path path;
     SourceLocation where;
+    ClipChoice clips = {};
 };
 
 struct LoadOptions {
     bool decode_textures = true;   ///< `kadr check` reads image headers alone
-    bool load_geometry = true;     ///< reserved for lazy loading; checks always run
     int texture_limit_px = 0;      ///< larger textures are averaged down to this longest side; 0: as they are
 };
 
-/// Reads glTF files (.gltf, .glb). Two requests for the same file share geometries, materials and textures.
+/// Reads glTF files (.gltf, .glb), all that is in them. Two requests for the same file share geometries, materials and
+/// textures. SceneFiles (scene_files.h) reads what a shot needs alone.
 /// @throws InputError  naming the file and the JSON pointer ("/meshes/0/primitives/1/indices")
 Scene load_scene(const std::vector<SceneFileRequest>& requests, const LoadOptions& options = {});
 

@@ -81,9 +81,30 @@ int TextureSet::use(int gltf_texture, bool srgb) {
     return index;
 }
 
-std::vector<TextureData> TextureSet::load(const LoadOptions& options) {
+std::vector<TextureData> TextureSet::outlines() const {
+    std::vector<TextureData> textures;
+    for (const Use& use : uses_) {
+        TextureData& texture = textures.emplace_back();
+        texture.name = document_.image_name(use.image);
+        texture.format = format_of(8, use.srgb);
+        texture.wrap_s = use.wrap_s;
+        texture.wrap_t = use.wrap_t;
+        texture.nearest = use.nearest;
+    }
+    return textures;
+}
+
+std::vector<std::string> TextureSet::unused_images() const {
+    std::vector<std::string> names;
+    for (std::size_t image = 0; image < document_.image_count(); ++image)
+        if (std::none_of(uses_.begin(), uses_.end(), [image](const Use& use) { return use.image == image; })) names.push_back(document_.image_name(image));
+    return names;
+}
+
+void TextureSet::load(const LoadOptions& options, const std::vector<bool>& needed, std::span<TextureData> textures) {
     std::vector<std::size_t> images;  // those in use, ascending
-    for (const Use& use : uses_) images.push_back(use.image);
+    for (std::size_t i = 0; i < uses_.size(); ++i)
+        if (needed[i]) images.push_back(uses_[i].image);
     std::sort(images.begin(), images.end());
     images.erase(std::unique(images.begin(), images.end()), images.end());
 
@@ -100,6 +121,7 @@ std::vector<TextureData> TextureSet::load(const LoadOptions& options) {
             const ImageHeader header = read_image_header(document_, pointer, bytes[i]);
             decoded[i].width = header.width;
             decoded[i].height = header.height;
+            decoded[i].bits = header.bits;
         }
     });
 
@@ -107,25 +129,23 @@ std::vector<TextureData> TextureSet::load(const LoadOptions& options) {
         return first[static_cast<std::size_t>(std::lower_bound(images.begin(), images.end(), use.image) - images.begin())];
     };
     std::vector<int> remaining(images.size(), 0);
-    for (const Use& use : uses_) ++remaining[source_of(use)];
-    std::vector<TextureData> result(uses_.size());
+    for (std::size_t i = 0; i < uses_.size(); ++i)
+        if (needed[i]) ++remaining[source_of(uses_[i])];
     for (std::size_t i = 0; i < uses_.size(); ++i) {
-        const Use& use = uses_[i];
-        const std::size_t source = source_of(use);
+        if (!needed[i]) continue;
+        const std::size_t source = source_of(uses_[i]);
         DecodedImage& image = decoded[source];
-        TextureData& texture = result[i];
-        texture.name = document_.image_name(use.image);
+        TextureData& texture = textures[i];
         texture.width = image.width;
         texture.height = image.height;
-        texture.format = format_of(image.bits, use.srgb);
-        texture.wrap_s = use.wrap_s;
-        texture.wrap_t = use.wrap_t;
-        texture.nearest = use.nearest;
+        texture.format = format_of(image.bits, uses_[i].srgb);
         if (--remaining[source] == 0) texture.texels = std::move(image.texels);
         else texture.texels = image.texels;
     }
-    if (options.texture_limit_px > 0) run_all(result.size(), [&](std::size_t i) { limit_size(result[i], options.texture_limit_px); });
-    return result;
+    if (options.texture_limit_px > 0)
+        run_all(uses_.size(), [&](std::size_t i) {
+            if (needed[i]) limit_size(textures[i], options.texture_limit_px);
+        });
 }
 
 }  // namespace kadr

@@ -9,7 +9,7 @@ import unittest
 import program
 from program import ProgramTest
 
-COMMANDS = ["render", "preview", "check", "describe", "smoke", "info", "devices"]
+COMMANDS = ["render", "preview", "check", "explain", "describe", "smoke", "info", "devices"]
 
 
 class Usage(ProgramTest):
@@ -30,7 +30,7 @@ class Usage(ProgramTest):
         self.assertEqual(self.refused("rendr", "a.yaml"), "error: unknown command 'rendr'\n  did you mean 'render'?\n")
 
     def test_no_command(self):
-        self.assertEqual(self.refused(), "error: no command was given\n  expected one of render, preview, check, describe, "
+        self.assertEqual(self.refused(), "error: no command was given\n  expected one of render, preview, check, explain, describe, "
                          "smoke, compare, measure, info, devices; see kadr --help\n")
 
     def test_unknown_option(self):

@@ -115,7 +115,7 @@ TEST(Textures, OfUnusedMaterialsAreNotRead) {
 
 TEST(Textures, AreOnlyLookedAtForChecks) {
     Textured file;
-    const Scene scene = file.load(LoadOptions{false, true});
+    const Scene scene = file.load(LoadOptions{false});
     ASSERT_THAT(scene.textures, SizeIs(1));
     EXPECT_EQ(scene.textures[0].width, 2);
     EXPECT_THAT(scene.textures[0].texels, IsEmpty());

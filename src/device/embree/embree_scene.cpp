@@ -9,16 +9,11 @@
 
 #include "base/error.h"
 #include "device/embree/alpha_filter.h"
+#include "device/embree/flatten.h"
 #include "device/tables/motion_keys.h"
 
 namespace kadr {
 namespace {
-
-/// Repeated meshes are flattened as well while all copies together stay below this.
-constexpr std::uint64_t kMaxRepeatedTriangles = 1'000'000;
-/// Smallest size of a flattened mesh against its distance from the render origin: below it, floats relative to the
-/// origin would be too coarse for ray offsets, and the mesh keeps its own coordinates.
-constexpr double kMinRelativeSize = 1e-3;
 
 void check(RTCDevice device, const char* action) {
     const RTCError error = rtcGetDeviceError(device);
@@ -61,7 +56,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     structures_ = {};
     structures_.kept = mesh_scenes_.size() + (same_geometry ? 2 : 0);
     if (!same_geometry) {
-        const std::vector<bool> flattened = choose_flattened(snapshot);
+        const std::vector<bool> flattened = choose_flattened(scene_, snapshot);
         std::vector<std::uint32_t> flat_ids;
         for (std::size_t i = 0; i < flattened.size(); ++i)
             if (flattened[i]) flat_ids.push_back(snapshot.instances[i].id);
@@ -116,27 +111,6 @@ void EmbreeScene::set_previous(const SceneSnapshot& snapshot) {
     view_.previous_camera = snapshot.camera;
     view_.previous_camera.keys = &previous_camera_key_;
     view_.previous_camera.key_count = 1;
-}
-
-std::vector<bool> EmbreeScene::choose_flattened(const SceneSnapshot& snapshot) const {
-    std::vector<std::uint64_t> uses(scene_.geometries.size(), 0);
-    const auto may_be = [](const SnapshotInstance& instance) { return instance.fixed_place >= 0 && instance.deformed < 0; };
-    for (const SnapshotInstance& instance : snapshot.instances) uses[instance.geometry] += may_be(instance) ? 1 : 0;
-    std::vector<bool> flattened(snapshot.instances.size(), false);
-    for (std::size_t i = 0; i < flattened.size(); ++i) {
-        const SnapshotInstance& instance = snapshot.instances[i];
-        const std::uint64_t triangles = scene_.geometries[instance.geometry].indices.size() / 3;
-        // What is hidden leaves the flat scene, which is then built anew; it costs rays nothing.
-        if (!may_be(instance) || instance.mask == 0 ||
-            (uses[instance.geometry] > 1 && uses[instance.geometry] * triangles > kMaxRepeatedTriangles))
-            continue;
-        const glm::dmat4& place = fixed_place(snapshot, instance);
-        const glm::dmat3 linear(place);
-        const double size = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
-        const double distance = glm::length(glm::dvec3(place[3]) - snapshot.render_origin);
-        flattened[i] = size > kMinRelativeSize * distance;
-    }
-    return flattened;
 }
 
 EmbreeGeometryHandle EmbreeScene::make_triangles(const kernels::Geometry& geometry, unsigned material) {

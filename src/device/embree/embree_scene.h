@@ -46,7 +46,6 @@ public:
     const DeformingMeshes& deforming() const { return deforming_; }
 
 private:
-    std::vector<bool> choose_flattened(const SceneSnapshot& snapshot) const;
     void build_flat(const SceneSnapshot& snapshot, const std::vector<bool>& flattened);
     void build_instances(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first);
     void lay_out_motions(const SceneSnapshot& snapshot, const std::vector<bool>& flattened, std::size_t first);

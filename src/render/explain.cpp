@@ -1,0 +1,57 @@
+#include "render/explain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "device/embree/frame_facts.h"
+#include "render/loaded_shot.h"
+
+namespace kadr {
+namespace {
+
+/// The first, the middle and the last frame.
+std::vector<int> telling_frames(const std::vector<int>& all) {
+    std::vector<int> frames{all.front(), all[(all.size() - 1) / 2], all.back()};
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+}
+
+void add_kernels(const LoadedShot& loaded, const std::vector<SceneSnapshot>& parts, int frame, std::vector<KernelUse>& uses) {
+    for (const SceneSnapshot& part : parts) {
+        const std::string name = name_of_requirements(requirements_of(loaded.scene(), part));
+        auto use = std::find_if(uses.begin(), uses.end(), [&](const KernelUse& known) { return known.name == name; });
+        if (use == uses.end()) use = uses.insert(uses.end(), {name, {}});
+        if (use->frames.empty() || use->frames.back() != frame) use->frames.push_back(frame);
+    }
+}
+
+}  // namespace
+
+Explanation explain_shot(const std::filesystem::path& path, const ShotOverrides& overrides, const DeviceRequest& device) {
+    const DeviceChoice choice = make_device(device);
+    LoadOptions headers;
+    headers.decode_textures = false;
+    const LoadedShot loaded(parse_shot(path, overrides), headers);
+    const Shot& shot = loaded.shot();
+    const std::vector<int>& frames = loaded.bound().timing().frames;
+    Explanation explanation;
+    explanation.shot = shot.name;
+    explanation.frames = static_cast<int>(frames.size());
+    explanation.first_frame = frames.front(), explanation.last_frame = frames.back();
+    explanation.width = shot.image.width, explanation.height = shot.image.height;
+    explanation.samples = shot.render.samples;
+    explanation.pixel_samples = static_cast<std::uint64_t>(shot.image.width) * static_cast<std::uint64_t>(shot.image.height) * static_cast<std::uint64_t>(shot.render.samples);
+    explanation.device = choice.device->name(), explanation.device_why = choice.why;
+    explanation.integrator = shot.render.integrator == Integrator::path ? "path" : "direct";
+    explanation.needs = requirements_of(loaded.bound());
+    explanation.left_out = loaded.left_out();
+    for (const SceneFile& file : loaded.scene().files) explanation.extensions.push_back({file.id, file.extensions, file.ignored_extensions});
+    for (const int frame : telling_frames(frames)) {
+        const std::vector<SceneSnapshot> parts = make_snapshots(loaded.bound(), loaded.bound().sequence().frame(frame));
+        add_kernels(loaded, parts, frame, explanation.kernels);
+    }
+    explanation.warnings = loaded.warnings();
+    return explanation;
+}
+
+}  // namespace kadr
