@@ -187,6 +187,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
     [[maybe_unused]] const float* later[3][kLanes<F>];  // the vertices in the following key
     [[maybe_unused]] F fraction(0.0f);
     AffineLanes<F> world_from_object;
+    [[maybe_unused]] Mask<F> placed(false);  // by a matrix; elsewhere vertices are in the world already
     F rotation_error = F(0.0f);  // of the tracer's transform against ours, radians
     SurfaceMaps<F> maps;
     Interaction<F> it;
@@ -211,8 +212,9 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
             const AffineOf<Real<F>> at = transform_at(scene, instance_index, lane(time, from));
             for (int r = 0; r < 3; ++r)
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
-            const bool slerps = scene.motions[instance_index].kind == InstanceMotion::Kind::keys;
-            set_lane(rotation_error, i, slerps ? kSlerpError : 0.0f);
+            const InstanceMotion& motion = scene.motions[instance_index];
+            set_lane(placed, i, !motion.identity);
+            set_lane(rotation_error, i, motion.kind == InstanceMotion::Kind::keys ? kSlerpError : 0.0f);
         }
         if constexpr (kMaps)
             fetch_maps(scene.materials[instance.material], g, keys, index, lane(hit.u, from), lane(hit.v, from), i,
@@ -244,7 +246,8 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
     const Mask<F> is_flat = !(dot(smooth, smooth) > F(1e-20f));
     smooth = select(is_flat, object_normal, smooth);
     if constexpr (kTransforms) {
-        it.geometric_normal = normalize(world_from_object.normal(object_normal));
+        // Normalised once where nothing is placed, as by kernels without transforms: the same to the last bit.
+        it.geometric_normal = select(placed, normalize(world_from_object.normal(object_normal)), object_normal);
         it.shading_normal = normalize(world_from_object.normal(smooth));
         it.position = world_from_object.point(object_point);
     } else {

@@ -100,7 +100,7 @@ inline constexpr unsigned kTransforms = 2;  ///< instances that are not flattene
 inline constexpr unsigned kEmitters =
     4;  ///< lights that rays can hit: MIS with area lights, triangles, environment maps
 inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shutter is open
-inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters;
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation;
 }  // namespace requirement
 
 }  // namespace kadr::kernels

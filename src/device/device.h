@@ -34,6 +34,8 @@ struct StructureCounts {
 
 /// Counters since the last set_frame, but for the times of load.
 struct DeviceStatistics {
+    unsigned required = 0;  ///< kernels::requirement bits that the frame needs
+    unsigned compiled = 0;  ///< those that its kernel is compiled for
     std::uint64_t pixel_samples = 0, rays = 0, dropped_samples = 0;
     double load_s = 0, set_frame_s = 0, render_s = 0;
     std::uint64_t flattened_triangles = 0, instances = 0, moving_instances = 0;
@@ -62,10 +64,18 @@ public:
     virtual Probe* probe() { return nullptr; }
 };
 
+/// Kernels are compiled for several sets of requirements (kernels::requirement). All leave the same pixels.
+enum class KernelChoice : std::uint8_t {
+    by_environment,  ///< what KADR_KERNEL_SET says: needed or all; needed without it
+    needed,          ///< the smallest set that holds what the frame needs
+    all,             ///< the set that holds everything, whatever the frame needs: for comparisons
+};
+
 struct DeviceRequest {
     std::string name = "auto";  ///< auto | cpu | hiprt
     int threads = 0;            ///< 0: as many as the machine gives
     int width = 0;              ///< lanes; 0: KADR_WIDTH, else what the processor has
+    KernelChoice kernels = KernelChoice::by_environment;
 };
 
 struct DeviceChoice {

@@ -33,6 +33,18 @@ int choose_width(int requested) {
     return width;
 }
 
+/// Kernels by request or KADR_KERNEL_SET; never by_environment.
+/// @throws InputError  for a value that is none
+KernelChoice choose_kernels(KernelChoice requested) {
+    if (requested != KernelChoice::by_environment) return requested;
+    const char* text = std::getenv("KADR_KERNEL_SET");
+    const std::string value = text ? text : "";
+    if (value == "all") return KernelChoice::all;
+    if (value.empty() || value == "needed") return KernelChoice::needed;
+    throw InputError(fmt::format("KADR_KERNEL_SET is '{}'", value),
+                     "expected needed (the kernels that a frame can do with) or all (those that can render anything)");
+}
+
 std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
@@ -55,8 +67,8 @@ std::optional<int> gpu_number(const std::string& name) {
     return value;
 }
 
-DeviceChoice make_gpu(const std::string& name, int number) {
-    Found<std::unique_ptr<Device>> gpu = try_gpu(number);
+DeviceChoice make_gpu(const std::string& name, int number, KernelChoice kernels) {
+    Found<std::unique_ptr<Device>> gpu = try_gpu(number, kernels);
     if (const std::string* missing = std::get_if<std::string>(&gpu))
         throw InputError(fmt::format("--device {}: {}", name, *missing),
                          "use --device cpu, or --device auto, which takes the best that works");
@@ -65,9 +77,10 @@ DeviceChoice make_gpu(const std::string& name, int number) {
 
 /// The GPU where it works, else the CPU; and why.
 DeviceChoice make_best_device(const DeviceRequest& request) {
-    Found<std::unique_ptr<Device>> gpu = try_gpu(0);
+    const KernelChoice kernels = choose_kernels(request.kernels);
+    Found<std::unique_ptr<Device>> gpu = try_gpu(0, kernels);
     if (std::string* missing = std::get_if<std::string>(&gpu))
-        return {make_embree_device(request.threads, choose_width(request.width)), std::move(*missing)};
+        return {make_embree_device(request.threads, choose_width(request.width), kernels), std::move(*missing)};
     return {std::move(std::get<std::unique_ptr<Device>>(gpu)), "the GPU works; --device cpu takes the CPU"};
 }
 
@@ -82,11 +95,12 @@ std::string names_of(const std::vector<GpuProperties>& gpus) {
 
 DeviceChoice make_device(const DeviceRequest& request) {
     if (const std::optional<int> gpu = gpu_number(request.name))
-        return make_gpu(request.name, *gpu);
+        return make_gpu(request.name, *gpu, choose_kernels(request.kernels));
     if (request.name == "auto") return make_best_device(request);
     if (request.name != "cpu")
         throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu, hiprt or hiprt:NUMBER");
-    return {make_embree_device(request.threads, choose_width(request.width)), "asked for by --device cpu"};
+    return {make_embree_device(request.threads, choose_width(request.width), choose_kernels(request.kernels)),
+            "asked for by --device cpu"};
 }
 
 std::vector<DeviceReport> list_devices() {

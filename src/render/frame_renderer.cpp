@@ -60,6 +60,8 @@ void stop_if_interrupted() {
 }  // namespace
 
 void add(DeviceStatistics& sum, const DeviceStatistics& part) {
+    sum.required |= part.required;
+    sum.compiled |= part.compiled;
     sum.pixel_samples += part.pixel_samples;
     sum.rays += part.rays;
     sum.dropped_samples += part.dropped_samples;

@@ -142,11 +142,13 @@ struct SmallScene {
         }
     };
 
-    Result render(int samples, int threads = 2, int width = 0, FilmLayers layers = {}) {
+    Result render(int samples, int threads = 2, int width = 0, FilmLayers layers = {},
+                  KernelChoice kernels = KernelChoice::needed) {
         DeviceRequest request;
         request.name = "cpu";
         request.threads = threads;
         request.width = width;
+        request.kernels = kernels;
         const DeviceChoice choice = make_device(request);
         snapshot.geometry_key = 1;
         choice.device->load(scene, environment.width > 0 ? &environment : nullptr);

@@ -36,9 +36,9 @@ inline void add_bent(SmallScene& s, unsigned keys, const kernels::Material& m) {
     const GeometryData g = unit_sphere(16);
     const unsigned geometry = s.add_mesh(g);
     s.add_instance(geometry, m, glm::dmat4(1), false);
-    s.snapshot.instances.edit_back().deformed = 0;
+    s.snapshot.instances.edit_back().deformed = static_cast<int>(s.snapshot.deformed.size());
     auto mesh = std::make_shared<DeformedMesh>();
-    mesh->geometry = geometry;
+    mesh->geometry = mesh->number = geometry;
     mesh->key_count = keys;
     mesh->version = 1;
     for (unsigned k = 0; k < keys; ++k)

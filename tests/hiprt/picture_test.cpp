@@ -20,8 +20,7 @@ using kernels::IntegratorKind;
 
 /// What kernels are compiled for here: all that a scene may require.
 template <IntegratorKind kIntegrator>
-constexpr unsigned kSet = kernels::kernel_requirements(kIntegrator,
-                                                       kernels::requirement::kAll | kernels::requirement::kDeformation);
+constexpr unsigned kSet = kernels::kernel_requirements(kIntegrator, kernels::requirement::kAll);
 
 template <IntegratorKind kIntegrator>
 double trace(const FakeHiprt& hiprt, const kernels::LaunchParams& params) {

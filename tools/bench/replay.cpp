@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "device/embree/embree_device.h"
 #include "device/embree/embree_scene.h"
+#include "device/embree/kernel_sets.h"
 #include "device/embree/tile_job.h"
 #include "frame/snapshot.h"
 #include "kernels/camera/filter_table.h"
@@ -40,8 +41,9 @@ public:
         : scene_(scene), samples_(samples), result_(std::make_unique<TileResult>()) {
         const kernels::Settings& settings = scene.view().settings;
         kernels::build_filter(settings.filter, settings.filter_radius, filter_);
-        driver_.reset(best_width() == 8 ? make_avx2_driver(settings.integrator, scene.requirements())
-                                        : make_portable_driver(settings.integrator, scene.requirements()));
+        const unsigned set = compiled_set(settings.integrator, scene.requirements());
+        driver_.reset(best_width() == 8 ? make_avx2_driver(settings.integrator, set)
+                                        : make_portable_driver(settings.integrator, set));
     }
 
     double render(std::vector<LoggedRay>* log) {

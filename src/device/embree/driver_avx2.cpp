@@ -4,8 +4,8 @@
 
 namespace kadr {
 
-TileDriver* make_avx2_driver(kernels::IntegratorKind integrator, unsigned requirements) {
-    return avx2::make_driver<kernels::Wide<8>>(integrator, requirements);
+TileDriver* make_avx2_driver(kernels::IntegratorKind integrator, unsigned set) {
+    return avx2::make_driver<kernels::Wide<8>>(integrator, set);
 }
 
 }  // namespace kadr

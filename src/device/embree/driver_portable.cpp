@@ -3,8 +3,8 @@
 
 namespace kadr {
 
-TileDriver* make_portable_driver(kernels::IntegratorKind integrator, unsigned requirements) {
-    return portable::make_driver<float>(integrator, requirements);
+TileDriver* make_portable_driver(kernels::IntegratorKind integrator, unsigned set) {
+    return portable::make_driver<float>(integrator, set);
 }
 
 }  // namespace kadr

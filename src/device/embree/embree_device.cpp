@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "device/embree/embree_scene.h"
 #include "device/embree/embree_tracer.h"
+#include "device/embree/kernel_sets.h"
 #include "device/embree/tile_job.h"
 #include "device/tables/scene_probe.h"
 #include "kernels/camera/filter_table.h"
@@ -57,8 +58,9 @@ struct Worker {
 
 class EmbreeDevice final : public Device, private Probe {
 public:
-    EmbreeDevice(int threads, int width)
+    EmbreeDevice(int threads, int width, KernelChoice kernels)
         : width_(width),
+          kernels_(kernels),
           limit_(allow_threads(threads)),
           arena_(threads > 0 ? threads : tbb::task_arena::automatic),
           device_(rtcNewDevice(nullptr)) {
@@ -95,6 +97,9 @@ public:
         statistics_ = {};
         statistics_.load_s = load_s;
         statistics_.set_frame_s = seconds_since(begin);
+        statistics_.required = scene_->requirements();
+        statistics_.compiled = compiled_set(snapshot.settings.integrator,
+                                            kernels_ == KernelChoice::all ? kernels::requirement::kAll : scene_->requirements());
         statistics_.flattened_triangles = scene_->flat_triangles();
         statistics_.instances = scene_->instance_count();
         statistics_.moving_instances = scene_->moving_count();
@@ -111,8 +116,8 @@ public:
                   rows = (film.height() + kTileEdge - 1) / kTileEdge;
         tbb::enumerable_thread_specific<Worker> workers([&] {
             Worker worker;
-            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, scene_->requirements())
-                                            : make_portable_driver(settings.integrator, scene_->requirements()));
+            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, statistics_.compiled)
+                                            : make_portable_driver(settings.integrator, statistics_.compiled));
             return worker;
         });
         std::atomic<int> done{0};
@@ -241,6 +246,7 @@ private:
     }
 
     int width_;
+    KernelChoice kernels_;
     std::unique_ptr<tbb::global_control> limit_;
     tbb::task_arena arena_;
     EmbreeDeviceHandle device_;
@@ -261,8 +267,8 @@ int best_width() {
 #endif
 }
 
-std::unique_ptr<Device> make_embree_device(int threads, int width) {
-    return std::make_unique<EmbreeDevice>(threads, width);
+std::unique_ptr<Device> make_embree_device(int threads, int width, KernelChoice kernels) {
+    return std::make_unique<EmbreeDevice>(threads, width, kernels);
 }
 
 }  // namespace kadr

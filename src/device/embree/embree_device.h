@@ -6,9 +6,10 @@
 
 namespace kadr {
 
-/// Embree on the CPU. @param threads 0: all; @param width lanes (0: what the processor has; KADR_WIDTH is read by the
-/// factory)
-std::unique_ptr<Device> make_embree_device(int threads, int width);
+/// Embree on the CPU. What the environment says is read by the factory.
+/// @param threads  0: all
+/// @param width    lanes
+std::unique_ptr<Device> make_embree_device(int threads, int width, KernelChoice kernels = KernelChoice::needed);
 
 /// "8 lanes (AVX2)" and the like, for `kadr devices`.
 int best_width();

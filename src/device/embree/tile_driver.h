@@ -9,6 +9,7 @@
 
 #include <utility>
 
+#include "device/embree/kernel_sets.h"
 #include "device/embree/path_columns.h"
 #include "device/embree/tile_job.h"
 #include "kernels/integrator/camera_path.h"
@@ -419,21 +420,28 @@ private:
     TileCounters* counters_ = nullptr;
 };
 
-/// The smallest compiled requirement set that holds what the shot needs.
+/// @param set  one of kernel_sets::kPath. @return null for another
+template <class F, std::size_t... I>
+TileDriver* make_path_driver(unsigned set, std::index_sequence<I...>) {
+    TileDriver* driver = nullptr;
+    ((set == kernel_sets::kPath[I] ? void(driver = new Driver<F, kernel_sets::kPath[I], IntegratorKind::path>()) : void()), ...);
+    return driver;
+}
+
+/// @param set  one of kernel_sets::kDirect. @return null for another
+template <class F, std::size_t... I>
+TileDriver* make_direct_driver(unsigned set, std::index_sequence<I...>) {
+    TileDriver* driver = nullptr;
+    ((set == kernel_sets::kDirect[I] ? void(driver = new Driver<F, kernel_sets::kDirect[I], IntegratorKind::direct>()) : void()), ...);
+    return driver;
+}
+
+/// @param set  of compiled_set
 template <class F>
-TileDriver* make_driver(IntegratorKind integrator, unsigned needs) {
-    using namespace requirement;
-    if (integrator == IntegratorKind::direct) {
-        if (needs == 0) return new Driver<F, 0, IntegratorKind::direct>();
-        if ((needs & kDeformation) != 0)
-            return new Driver<F, kMaps | kTransforms | kDeformation, IntegratorKind::direct>();
-        return new Driver<F, kMaps | kTransforms, IntegratorKind::direct>();
-    }
-    if (needs == 0) return new Driver<F, 0, IntegratorKind::path>();
-    if ((needs & kDeformation) != 0) return new Driver<F, kAll | kDeformation, IntegratorKind::path>();
-    if (needs == kEmitters) return new Driver<F, kEmitters, IntegratorKind::path>();
-    if ((needs & kTransforms) == 0) return new Driver<F, kMaps | kEmitters, IntegratorKind::path>();
-    return new Driver<F, kAll, IntegratorKind::path>();
+TileDriver* make_driver(IntegratorKind integrator, unsigned set) {
+    return integrator == IntegratorKind::direct
+               ? make_direct_driver<F>(set, std::make_index_sequence<kernel_sets::kDirect.size()>())
+               : make_path_driver<F>(set, std::make_index_sequence<kernel_sets::kPath.size()>());
 }
 
 }  // namespace kadr::KADR_DRIVER_NAMESPACE

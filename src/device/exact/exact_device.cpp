@@ -162,7 +162,7 @@ private:
 
     static void render_sample(const ExactScene& scene, const Params& params, int x, int y, kernels::LaunchCounters& counters) {
         using namespace kernels;
-        constexpr unsigned kEverything = requirement::kAll;
+        constexpr unsigned kEverything = requirement::kAll & ~requirement::kDeformation;
         const bool direct = params.scene.settings.integrator == IntegratorKind::direct;
         ExactTracer tracer(scene, direct);
         if (direct)

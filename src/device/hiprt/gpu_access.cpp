@@ -24,7 +24,7 @@ std::filesystem::path kernel_cache() {
 }
 
 /// @throws InputError, RenderError  with what went wrong on the way
-std::unique_ptr<Device> start(const GpuProbe& probe, int number) {
+std::unique_ptr<Device> start(const GpuProbe& probe, int number, KernelChoice kernels) {
     // HIPRT reads it when it compiles.
     setenv("HIPRT_PATH", probe.hiprt_headers.c_str(), 1);
     HiprtParts parts;
@@ -32,6 +32,7 @@ std::unique_ptr<Device> start(const GpuProbe& probe, int number) {
     parts.runtime = make_orochi_runtime(probe.vendor, number);
     parts.kernel_folder = probe.kernel_folder;
     parts.cache_folder = kernel_cache();
+    parts.kernels = kernels;
     return make_hiprt_device(std::move(parts));
 }
 
@@ -51,7 +52,7 @@ GpuList list_gpus() {
     return list;
 }
 
-Found<std::unique_ptr<Device>> try_gpu(int number) {
+Found<std::unique_ptr<Device>> try_gpu(int number, KernelChoice kernels) {
     const GpuProbe probe = probe_gpu(this_machine(), built_with_orochi());
     if (!probe.complete()) return probe.missing();
     try {
@@ -59,7 +60,7 @@ Found<std::unique_ptr<Device>> try_gpu(int number) {
         if (count == 0) return kNoneFound;
         if (number >= count)
             return fmt::format("there is no GPU {}, only 0 to {}; see kadr devices", number, count - 1);
-        return start(probe, number);
+        return start(probe, number, kernels);
     } catch (const InputError& error) {
         return error.diagnostics().front().found;
     } catch (const RenderError& error) {

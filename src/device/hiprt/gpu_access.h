@@ -18,6 +18,6 @@ struct GpuList {
 GpuList list_gpus();
 
 /// A GPU, or in one sentence why it cannot be had. @param number  from 0
-Found<std::unique_ptr<Device>> try_gpu(int number);
+Found<std::unique_ptr<Device>> try_gpu(int number, KernelChoice kernels);
 
 }  // namespace kadr

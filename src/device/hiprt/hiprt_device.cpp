@@ -13,6 +13,7 @@
 #include "device/hiprt/launch_queue.h"
 #include "device/hiprt/trace_kernels.h"
 #include "kernels/camera/filter_table.h"
+#include "kernels/gpu/entry_points.h"
 #include "kernels/sampler/sobol.h"
 
 namespace kadr {
@@ -47,6 +48,7 @@ public:
           context_(api_, *runtime_, parts.cache_folder),
           functions_(context_),
           kernels_(context_, std::move(parts.kernel_folder)),
+          choice_(parts.kernels),
           builder_(context_, memory_, stream_),
           film_(memory_, stream_),
           launches_(*runtime_, stream_) {}
@@ -79,14 +81,18 @@ public:
         with_memory("the frame", [&] { scene_->set_frame(snapshot); });
         stream_.synchronize("build the structures of the frame on the GPU");
         // Here and not when it renders: compiling takes long the first time, and is no part of what samples cost.
-        function_ =
-            kernels_.get({scene_->view().settings.integrator, scene_->requirements(), scene_->asks_functions()});
+        const kernels::IntegratorKind integrator = scene_->view().settings.integrator;
+        const unsigned set = kernels::kernel_requirements(
+            integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : scene_->requirements());
+        function_ = kernels_.get({integrator, set, scene_->asks_functions()});
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
         kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
         const double load_s = statistics_.load_s;
         statistics_ = {};
         statistics_.load_s = load_s;
+        statistics_.required = scene_->requirements();
+        statistics_.compiled = set;
         statistics_.instances = scene_->instance_count();
         statistics_.moving_instances = scene_->moving_count();
         statistics_.structures = scene_->structures();
@@ -207,6 +213,7 @@ private:
     HiprtContext context_;
     HiprtFunctionTable functions_;
     TraceKernels kernels_;
+    KernelChoice choice_;
     StructureBuilder builder_;
     DeviceTable<kernels::Shutter> shutter_table_;
     DeviceTable<kernels::FilterTable> filter_table_;

@@ -15,6 +15,7 @@ struct HiprtParts {
     hiprt::Api api;
     std::filesystem::path kernel_folder;  ///< holds kernels/
     std::filesystem::path cache_folder;   ///< for compiled kernels; empty: HIPRT's own choice
+    KernelChoice kernels = KernelChoice::needed;  ///< `needed`: exactly what a frame needs is compiled
 };
 
 /// A GPU through HIPRT. What it cannot show it refuses by name when it is given the frame.

@@ -1,0 +1,116 @@
+// Kernels compiled for what a frame needs: the same pixels as those of the kernel that can do everything.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "base/error.h"
+#include "device/embree/embree_device.h"
+#include "device/embree/kernel_sets.h"
+#include "device/random_scene.h"
+#include "device/same_picture.h"
+
+namespace kadr::test {
+namespace {
+
+using kernels::IntegratorKind;
+
+SmallScene::Result render(SmallScene& s, int width, KernelChoice kernels) {
+    FilmLayers layers;
+    layers.albedo = layers.normal = layers.depth = layers.samples = true;
+    layers.motion = s.snapshot.previous.has_value();
+    return s.render(6, 1, width, layers, kernels);
+}
+
+/// No tolerance: what a kernel leaves out, another computes without effect. @return the set of the smaller kernel
+unsigned expect_same(SmallScene& s, int width, const std::string& name) {
+    const SmallScene::Result needed = render(s, width, KernelChoice::needed), all = render(s, width, KernelChoice::all);
+    EXPECT_TRUE(same_bits(needed.image, all.image)) << name << ", " << width << " lanes, set " << needed.statistics.compiled;
+    EXPECT_EQ(needed.statistics.rays, all.statistics.rays) << name;
+    EXPECT_EQ(all.statistics.compiled, compiled_set(s.snapshot.settings.integrator, kernels::requirement::kAll)) << name;
+    return needed.statistics.compiled;
+}
+
+class KernelSets : public testing::TestWithParam<std::tuple<IntegratorKind, int>> {
+protected:
+    void SetUp() override {
+        if (width() > best_width()) GTEST_SKIP() << "this processor has no AVX2";
+    }
+    IntegratorKind integrator() const { return std::get<0>(GetParam()); }
+    int width() const { return std::get<1>(GetParam()); }
+};
+
+TEST_P(KernelSets, LeaveTheSamePixelsAsTheLargestOne) {
+    for (const VariedScene& content : varied_scenes()) {
+        SmallScene s = sunlit(integrator());
+        content.add(s);
+        expect_same(s, width(), content.name);
+    }
+}
+
+TEST_P(KernelSets, LeaveTheSamePixelsInScenesOfRandomFeatures) {
+    constexpr unsigned kScenes = 200;
+    std::set<unsigned> used;
+    for (unsigned seed = 1; seed <= kScenes; ++seed) {
+        RandomScene random(seed, integrator());
+        used.insert(expect_same(random.scene, width(), "seed " + std::to_string(seed) + ": " + random.description()));
+    }
+    std::set<unsigned> compiled;
+    if (integrator() == IntegratorKind::path)
+        compiled.insert(kernel_sets::kPath.begin(), kernel_sets::kPath.end());
+    else
+        compiled.insert(kernel_sets::kDirect.begin(), kernel_sets::kDirect.end());
+    EXPECT_EQ(used, compiled) << "a kernel was compared with itself alone, or not at all";
+}
+
+INSTANTIATE_TEST_SUITE_P(BothIntegratorsAndWidths, KernelSets,
+                         testing::Combine(testing::Values(IntegratorKind::path, IntegratorKind::direct), testing::Values(1, 8)));
+
+TEST(CompiledSet, IsTheFirstThatHoldsWhatIsNeeded) {
+    using namespace kernels::requirement;
+    for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::direct})
+        for (unsigned needs = 0; needs <= kAll; ++needs) {
+            const unsigned held = integrator == IntegratorKind::direct ? needs & ~kEmitters : needs;
+            EXPECT_EQ(compiled_set(integrator, needs) & held, held) << needs;
+        }
+    EXPECT_EQ(compiled_set(IntegratorKind::path, 0), 0u);
+    EXPECT_EQ(compiled_set(IntegratorKind::direct, kEmitters), 0u) << "the analytic model meets no lights";
+}
+
+/// Sets KADR_KERNEL_SET while it lives.
+class KernelSetVariable {
+public:
+    explicit KernelSetVariable(const char* value) { setenv("KADR_KERNEL_SET", value, 1); }
+    ~KernelSetVariable() { unsetenv("KADR_KERNEL_SET"); }
+};
+
+unsigned set_taken() {
+    SmallScene s = sunlit(IntegratorKind::path);
+    return s.render(1, 1, 1, {}, KernelChoice::by_environment).statistics.compiled;
+}
+
+TEST(KernelSetVariable, ChoosesTheKernels) {
+    const unsigned all = compiled_set(IntegratorKind::path, kernels::requirement::kAll);
+    EXPECT_EQ(set_taken(), 0u);
+    {
+        const KernelSetVariable variable("all");
+        EXPECT_EQ(set_taken(), all);
+    }
+    const KernelSetVariable variable("needed");
+    EXPECT_EQ(set_taken(), 0u);
+}
+
+TEST(KernelSetVariable, OtherValuesAreErrors) {
+    const KernelSetVariable variable("most");
+    try {
+        make_device({"cpu", 1, 1});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.diagnostics().front().found, "KADR_KERNEL_SET is 'most'");
+        EXPECT_EQ(error.diagnostics().front().expected,
+                  "expected needed (the kernels that a frame can do with) or all (those that can render anything)");
+    }
+}
+
+}  // namespace
+}  // namespace kadr::test
