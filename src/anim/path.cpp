@@ -36,7 +36,8 @@ void Path::add_spans(std::size_t segment, double from, double to, double length,
     const double middle = 0.5 * (from + to);
     const double left = segments_[segment].length(from, middle), right = segments_[segment].length(middle, to);
     constexpr int kDeepest = 24;
-    if (depth >= kDeepest || std::abs(left + right - length) <= tolerance) {
+    // Not "<=": a length that is not finite would be halved without end.
+    if (depth >= kDeepest || !(std::abs(left + right - length) > tolerance)) {
         spans_.push_back({segment, from, to, length_});
         length_ += length;
         return;

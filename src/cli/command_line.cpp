@@ -25,7 +25,7 @@ constexpr const char* kShotHelp = "shot file (.yaml)";
 struct RawOptions {
     std::string shot, size, device = "auto";
     std::vector<std::string> set, shots;
-    int frame = 0, threads = 0, samples = 0;
+    std::string frame, threads, samples, exposure, pixels_per_degree;
     std::string time, frames, sheet, from;
     bool onion = false, path = false;
     std::string limits, view, fps, time_budget_shot, sweep;
@@ -37,6 +37,24 @@ int parse_number(const std::string& text, const std::string& option, const std::
     if (error != std::errc() || end != text.data() + text.size() || value <= 0)
         throw InputError(fmt::format("{} is '{}'", option, text), expected);
     return value;
+}
+
+/// Far beyond any machine; what is asked for is allocated.
+constexpr int kMostThreads = 1024;
+
+int parse_threads(const std::string& text) {
+    const std::string expected = fmt::format("expected a whole number from 1 to {}, as in --threads 8", kMostThreads);
+    const int threads = parse_number(text, "--threads", expected);
+    if (threads > kMostThreads) throw InputError(fmt::format("--threads is '{}'", text), expected);
+    return threads;
+}
+
+int parse_frame(const std::string& text) {
+    int frame = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), frame);
+    if (error != std::errc() || end != text.data() + text.size())
+        throw InputError(fmt::format("--frame is '{}'", text), "expected the number of a frame, as in --frame 42");
+    return frame;
 }
 
 /// "640x360" as two numbers above zero.
@@ -93,6 +111,13 @@ std::optional<std::pair<double, std::string>> number_and_unit(const std::string&
     return std::pair(value, text.substr(std::min(text.size(), text.find_first_not_of(' ', used))));
 }
 
+double parse_between(const std::string& text, const std::string& option, double low, double high) {
+    const auto found = number_and_unit(text);
+    if (!found || !found->second.empty() || !(found->first >= low && found->first <= high))
+        throw InputError(fmt::format("{} is '{}'", option, text), fmt::format("expected a number from {} to {}", low, high));
+    return found->first;
+}
+
 /// "1.75s", "1.75 s" or "1.75".
 double parse_seconds(const std::string& text) {
     const auto found = number_and_unit(text);
@@ -115,7 +140,11 @@ Rational parse_fps(const std::string& text) {
     const std::string expected = "expected frames a second, as in --fps 24 or --fps 24000/1001";
     const std::size_t at = text.find('/');
     const int numerator = parse_number(text.substr(0, at), "--fps", expected);
-    return Rational(numerator, at == std::string::npos ? 1 : parse_number(text.substr(at + 1), "--fps", expected));
+    const Rational fps(numerator, at == std::string::npos ? 1 : parse_number(text.substr(at + 1), "--fps", expected));
+    constexpr double kFewest = 0.001, kMost = 10000;  // ffmpeg writes no video of others
+    if (fps.value() < kFewest || fps.value() > kMost)
+        throw InputError(fmt::format("--fps is '{}'", text), fmt::format("expected {} to {} frames a second", kFewest, kMost));
+    return fps;
 }
 
 /// "90s", "10m", "1.5 h"; a number alone is seconds.
@@ -205,12 +234,12 @@ void Parser::add_set(CLI::App* app) {
 
 void Parser::add_device(CLI::App* app) {
     app->add_option("--device", raw_.device, "auto, cpu, hiprt or hiprt:N (a GPU by number)")->capture_default_str();
-    app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)")->check(CLI::PositiveNumber);
+    app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)");
 }
 
 void Parser::add_overrides(CLI::App* app) {
     add_set(app);
-    app->add_option("--samples", raw_.samples, "samples a pixel; the most, with --max-error or a time budget")->check(CLI::PositiveNumber);
+    app->add_option("--samples", raw_.samples, "samples a pixel; the most, with --max-error or a time budget");
     app->add_option("--size", raw_.size, "WIDTHxHEIGHT in pixels");
     add_device(app);
 }
@@ -309,10 +338,9 @@ void Parser::add_compare() {
     app->add_option("--video", options.video, "reference, test and error map side by side, a video file");
     app->add_option("--fps", raw_.fps, "frames a second of --video (default: 24)");
     app->add_option("--view", raw_.view, "how linear images (.exr) are looked at: none, srgb, agx, aces, pbr-neutral (default: srgb)");
-    app->add_option("--exposure", options.difference.view.exposure_stops, "stops that linear images are brightened by first")
-        ->check(CLI::Range(-100.0, 100.0));
-    app->add_option("--pixels-per-degree", options.difference.pixels_per_degree, "how large the viewer sees a pixel")
-        ->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+    app->add_option("--exposure", raw_.exposure, "stops that linear images are brightened by first (default: 0)");
+    app->add_option("--pixels-per-degree", raw_.pixels_per_degree,
+                    fmt::format("how large the viewer sees a pixel (default: {:.6g})", options.difference.pixels_per_degree));
     add_device(app);
     app->add_flag("--json", invocation_.json, "one JSON object a line");
 }
@@ -404,8 +432,8 @@ void Parser::refuse(const std::vector<std::string>& arguments, const CLI::ParseE
 void Parser::fill_overrides(RenderOptions& options) const {
     options.shot = raw_.shot;
     options.device.name = raw_.device;
-    options.device.threads = raw_.threads;
-    options.overrides.samples = raw_.samples;
+    if (!raw_.threads.empty()) options.device.threads = parse_threads(raw_.threads);
+    if (!raw_.samples.empty()) options.overrides.samples = parse_number(raw_.samples, "--samples", "expected a whole number above zero, as in --samples 64");
     for (const std::string& text : raw_.set) options.overrides.set.push_back(parse_setting(text));
     if (raw_.size.empty()) return;
     const auto [width, height] = parse_size(raw_.size);
@@ -447,7 +475,7 @@ void Parser::fill_preview() {
     check_conflicts(app);
     PreviewOptions& preview = invocation_.preview;
     preview.render = invocation_.render;
-    if (app.count("--frame") > 0) preview.frame = raw_.frame;
+    if (app.count("--frame") > 0) preview.frame = parse_frame(raw_.frame);
     if (!raw_.time.empty()) preview.time_s = parse_seconds(raw_.time);
     if (!raw_.frames.empty()) preview.frames = parse_frame_list(raw_.frames);
     if (!raw_.from.empty()) preview.from = parse_viewpoint(raw_.from);
@@ -466,6 +494,8 @@ void Parser::fill_compare() {
     if (commands_[Command::compare]->count("--fail-above") > 0) compare.limits = parse_limits(raw_.limits);
     if (!raw_.view.empty()) compare.difference.view.transform = parse_view(raw_.view);
     if (!raw_.fps.empty()) compare.fps = parse_fps(raw_.fps);
+    if (!raw_.exposure.empty()) compare.difference.view.exposure_stops = parse_between(raw_.exposure, "--exposure", -100, 100);
+    if (!raw_.pixels_per_degree.empty()) compare.difference.pixels_per_degree = parse_between(raw_.pixels_per_degree, "--pixels-per-degree", 1, 1000);
 }
 
 void Parser::fill_measure() {

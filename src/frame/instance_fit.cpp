@@ -181,10 +181,7 @@ private:
     glm::dmat4 copied_from_geometry(std::size_t i) const { return interval_.shot.bindings().copied_from_geometry(scene_, instances_[i]); }
 
     void refuse(std::size_t i, std::string_view what, std::string expected) {
-        const int file = rig_.file_of(node_of(i));
-        const std::string name = node_path(scene_, file, node_of(i));
-        fits_.problems.push_back(problem_at(interval_.shot.shot().scenes[static_cast<std::size_t>(file)].where,
-                                             fmt::format("node '{}' {} at {} s", name, what, format_number(interval_.open_s)), std::move(expected)));
+        fits_.problems.push_back(problem_of_node(interval_.shot, node_of(i), what, interval_.open_s, std::move(expected)));
         fits_.fitted[i].hidden = true;
     }
 

@@ -8,6 +8,7 @@
 #include "frame/decompose.h"
 #include "frame/frame_state.h"
 #include "frame/instance_list.h"
+#include "frame/reach.h"
 #include "frame/render_origin.h"
 
 namespace kadr {
@@ -29,6 +30,7 @@ struct Interval {
 struct MotionFit {
     bool too_fast = false;          ///< something turns so fast that 129 frames are not enough: nothing was added
     bool missed = false;            ///< something strays beyond the motion tolerance although it has 129 frames
+    Reach reach;                    ///< of all instances
     std::vector<double> corners_s;  ///< keys, beside every even grid, of what strays: good times to split the shutter at
 };
 

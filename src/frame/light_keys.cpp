@@ -136,8 +136,7 @@ ExactLight light_at(const BoundShot& shot, const LightSeed& seed, double time_s,
     const glm::dmat4 world = shot.bindings().node_transform(seed.node, seed.copy, time_s);
     const double length = glm::length(glm::dvec3(world[2]));
     if (!is_finite(world))
-        throw InputError(fmt::format("the node of light '{}' has a transform that is not finite at {} s", source.name, format_number(time_s)),
-                         "expected finite translations and scales");
+        throw InputError(problem_of_node(shot, seed.node, "has a light, and a transform that is not finite,", time_s, "expected finite translations and scales"));
     ExactLight light{};
     light.radiance = to_vec(source.color * source.intensity);
     light.kind = source.kind;

@@ -112,6 +112,7 @@ private:
         placed_.types.push_back(sheared ? FrameType::matrix : FrameType::srt);
         placed_.linear.push_back(fitted.linear ? 1 : 0);
         count += fitted.count;
+        for (const Decomposition& part : parts) placed_.reach.add(source.id, part);
         add_instance(source);
         if (source.seed->deformer >= 0) bending_error_px_ = std::max<double>(bending_error_px_, fitted.error_px);
         if (fitted.error_px > max_error_px_) max_error_px_ = fitted.error_px, worst_ = placed_.instances.size() - 1;
@@ -248,7 +249,10 @@ MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s
     if (fit.too_fast) return fit;
     const std::shared_ptr<const PlacedInstances> still = still_places(interval);
     Packing packing(interval, batches, still.get());
-    join(still, packing.take(), snapshot);
+    PlacedInstances own = packing.take();
+    fit.reach = still->reach;
+    fit.reach.add(own.reach);
+    join(still, std::move(own), snapshot);
     snapshot.motion.max_error_px = packing.max_error_px();
     snapshot.motion.bending_error_px = packing.bending_error_px();
     snapshot.motion.worst = static_cast<std::uint32_t>(packing.max_error_px() > 0 ? still->instances.size() + packing.worst() : 0);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame/reach.h"
 #include "frame/snapshot.h"
 
 namespace kadr {
@@ -19,6 +20,7 @@ struct PlacedInstances {
     std::vector<std::uint8_t> linear;
     std::vector<kernels::FrameSrt> srt;
     std::vector<kernels::FrameMatrix> matrices;
+    Reach reach;
     std::uint64_t key = 0;  ///< hash of all lists
 };
 

@@ -2,6 +2,12 @@
 
 #include <fstream>
 
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "frame/bindings.h"
+#include "frame/references.h"
+
 namespace kadr {
 
 namespace {
@@ -31,6 +37,12 @@ Diagnostic warning_at(const SourceLocation& where, std::string found, std::strin
     Diagnostic problem = problem_at(where, std::move(found), std::move(expected));
     problem.warning = true;
     return problem;
+}
+
+Diagnostic problem_of_node(const BoundShot& shot, int node, std::string_view what, double time_s, std::string expected) {
+    const int file = shot.bindings().rig.file_of(node);
+    return problem_at(shot.shot().scenes[static_cast<std::size_t>(file)].where,
+                      fmt::format("node '{}' {} at {} s", node_path(shot.scene(), file, node), what, format_number(time_s)), std::move(expected));
 }
 
 }  // namespace kadr

@@ -19,7 +19,9 @@
 #include "frame/light_keys.h"
 #include "frame/motion_frames.h"
 #include "frame/problem.h"
+#include "frame/reach.h"
 #include "frame/render_origin.h"
+#include "frame/seen_distance.h"
 #include "frame/shutter_part.h"
 
 namespace kadr {
@@ -202,8 +204,10 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
 class FrameSnapshots {
 public:
     FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
-        const CameraState camera = camera_at(shot, frame.open_s);
-        space_ = render_space(camera.position, camera.subject_distance);
+        CameraState camera = camera_at(shot, frame.open_s);
+        camera.subject_distance = seen_distance(shot, camera, frame.open_s);
+        const double pixel_rad = camera.orthographic ? 0 : 2 * camera.tan_half_height / shot.shot().image.height;
+        space_ = render_space(camera.position, camera.rotation * glm::dvec3(0, 0, -1), camera.subject_distance, pixel_rad);
     }
 
     std::vector<SceneSnapshot> make() {
@@ -219,6 +223,8 @@ private:
         SceneSnapshot snapshot;
         snapshot.render_origin = space_.origin;
         snapshot.unit_m = space_.unit_m;
+        snapshot.open_s = part.open_s;
+        snapshot.close_s = part.close_s;
         if (depth < kDeepestChange && changes_fast(shot_, inside.open_s, inside.close_s)) return split_at(middle(part), part, depth);
         const MotionFit fit = add_motion_frames(shot_, inside.open_s, inside.close_s, snapshot);
         if (fit.too_fast) return split_at(middle(part), part, depth);
@@ -226,12 +232,13 @@ private:
         if (may_split && fit.missed) return split_at(best_of(fit.corners_s, part), part, depth);
         const double enough_px = kMotionMargin * shot_.shot().render.motion_tolerance_px;
         const std::vector<double> camera_corners_s = add_camera(inside, snapshot);
+        check_reach(shot_, snapshot, fit.reach);
         if (may_split && snapshot.camera_error_px > enough_px) return split_at(best_of(camera_corners_s, part), part, depth);
         const std::vector<double> light_corners_s = add_light_keys(shot_, inside.open_s, inside.close_s, snapshot);
         if (may_split && snapshot.light_error > kLightTolerance) return split_at(best_of(light_corners_s, part), part, depth);
         if (const double bent_px = add_bending(inside, snapshot); may_split && bent_px > kDeformationShare * enough_px)
             return split_at(middle(part), part, depth);
-        add_rest(part, inside, snapshot);
+        add_rest(inside, snapshot);
         snapshots_.push_back(std::move(snapshot));
     }
 
@@ -277,13 +284,11 @@ private:
         return vertices_px;
     }
 
-    void add_rest(const Part& part, const Part& inside, SceneSnapshot& snapshot) const {
+    void add_rest(const Part& inside, SceneSnapshot& snapshot) const {
         const double middle_s = 0.5 * (inside.open_s + inside.close_s);
         hide_instances(shot_, middle_s, snapshot.instances);
         snapshot.materials = shot_.bindings().materials.table(middle_s);
         snapshot.frame_number = frame_.number;
-        snapshot.open_s = part.open_s;
-        snapshot.close_s = part.close_s;
         set_shutter(shot_, frame_, snapshot);
         snapshot.environment = environment_over(shot_, inside.open_s, inside.close_s);
         snapshot.settings = settings_of(shot_.shot(), frame_.number);

@@ -199,7 +199,7 @@ void GltfDocument::parse(std::string_view text) {
         fail({}, fmt::format("its JSON nests {} levels deep", depth), fmt::format("expected at most {} levels", kDeepestJson));
     try {
         json_ = Json::parse(text);
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {  // of its grammar, or of a number that no double holds
         // The library's text up to "; expected" says where and what; its prefix is a code of its own.
         std::string why = error.what();
         if (const std::size_t end = why.find("] "); end != std::string::npos) why.erase(0, end + 2);

@@ -7,11 +7,11 @@
 
 #include "base/text.h"
 #include "shot/quality.h"
+#include "shot/shot_document.h"
 
 namespace kadr {
 
 namespace {
-
 
 YamlNode scalar_node(const YamlSource& source, std::string text, bool quoted) {
     YamlNode node;
@@ -126,7 +126,11 @@ public:
     void set(const std::string& path, const std::string& value) {
         const YamlSource& source = document_.add_source(value, fmt::format("--set {}={}", path, value), folder_, true);
         try {
-            put(source, path, parse_yaml(source));
+            YamlNode node = parse_yaml(source);
+            Problems duplicates;
+            check_duplicates(duplicates, node);
+            for (Diagnostic& problem : duplicates.take_errors()) problems_.push_back(std::move(problem));
+            put(source, path, std::move(node));
         } catch (const InputError& error) {
             problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
         }

@@ -37,10 +37,11 @@ void check_duplicates(Problems& problems, const YamlNode& node) {
     std::map<std::string_view, const YamlEntry*> seen;
     for (const YamlEntry& entry : node.entries) {
         const auto [first, fresh] = seen.emplace(entry.key.text, &entry);
-        if (!fresh)
+        if (!fresh) {
+            const int line = location_of(first->second->key.place).line;  // an argument has none
             problems.error(entry.key.place, fmt::format("duplicate key '{}'", entry.key.text),
-                           fmt::format("it is already given at line {}; keep one of the two",
-                                       location_of(first->second->key.place).line));
+                           line > 0 ? fmt::format("it is already given at line {}; keep one of the two", line) : "it is given twice; keep one of the two");
+        }
         check_duplicates(problems, entry.value);
     }
     for (const YamlNode& item : node.items) check_duplicates(problems, item);

@@ -46,6 +46,22 @@ class Usage(ProgramTest):
         self.assertIn("--size is '640x'", self.refused("render", "ball.yaml", "--size", "640x"))
         self.assertIn("--size is '0x10'", self.refused("render", "ball.yaml", "--size", "0x10"))
 
+    def test_numbers(self):
+        """Whatever a number is: a refusal that names the option, what was found and what was expected."""
+        expected = {"--threads": "a whole number from 1 to 1024, as in --threads 8", "--samples": "a whole number above zero, as in --samples 64",
+                    "--exposure": "a number from -100 to 100", "--pixels-per-degree": "a number from 1 to 1000",
+                    "--frame": "the number of a frame, as in --frame 42", "--fps": "frames a second, as in --fps 24 or --fps 24000/1001"}
+        commands = {"--threads": ["render", "ball.yaml"], "--samples": ["render", "ball.yaml"], "--frame": ["preview", "ball.yaml"]}
+        for option, message in expected.items():
+            for value in ["nan", "inf", "-inf", "1e400", "1e308", "x", "0x10y", "99999999999999999999"]:
+                self.assertEqual(self.refused(*commands.get(option, ["compare", "a.png", "b.png"]), f"{option}={value}"),
+                                 f"error: {option} is '{value}'\n  expected {message}\n")
+        for value in ["0", "-1", "1025", "2147483647"]:
+            self.assertIn(f"--threads is '{value}'", self.refused("smoke", "ball.yaml", f"--threads={value}"))
+        for value in ["2147483647", "24/2147483647"]:
+            self.assertIn("expected 0.001 to 10000 frames a second", self.refused("compare", "a.png", "b.png", f"--fps={value}"))
+        self.assertIn("--set camera.f_stop=.nan: error: camera.f_stop is .nan", self.refused("check", "ball.yaml", "--set", "camera.f_stop=.nan"))
+
     def test_set(self):
         self.assertEqual(self.refused("render", "ball.yaml", "--set", "samples"),
                          "error: --set is 'samples'\n  expected KEY.PATH=VALUE, as in --set render.samples=16\n")

@@ -126,6 +126,13 @@ TEST(Robustness, RaysThatAreNotFiniteAreDroppedAndCounted) {
     EXPECT_EQ(result.mean(), 0);
 }
 
+/// Debian's Embree ends the program on them.
+TEST(Robustness, RaysBeyondWhatEmbreeTakesAreDroppedAndCounted) {
+    SmallScene s = lit_sphere({0, 0, 0}, 1, true);
+    s.snapshot.camera_keys[0].position.x = 1e19f;
+    EXPECT_EQ(s.render(2).statistics.dropped_samples, 2u * 32 * 32);
+}
+
 TEST(Robustness, EmptySceneOnePixelNoLights) {
     SmallScene s;
     s.snapshot.settings.width = s.snapshot.settings.height = 1;

@@ -229,6 +229,30 @@ TEST(MotionFrames, PlacesThatAreNotFiniteAreRefusedByName) {
               "  expected finite translations, rotations and scales");
 }
 
+TEST(MotionFrames, WhatFloatsCannotHoldBesideEachOtherIsRefusedByName) {
+    Stage far;
+    far.node(far.add_node("star")).translation = {2e17, 0, 0};
+    EXPECT_EQ(message_of([&] { far.snapshot(); }), "stage.yaml:3:5: error: node 'stage/star' reaches 2e+17 m from the camera at 0 s\n  expected at most 1e+17 m");
+    Stage tiny;
+    tiny.add_node("house");
+    tiny.node(tiny.add_node("atom")).scale = glm::dvec3(1e-20);
+    EXPECT_EQ(message_of([&] { tiny.snapshot(); }),
+              "stage.yaml:3:5: error: node 'stage/atom' is 1e-20 m large in a scene of 5 m at 0 s\n  expected less than 1e+17 times its size; make it larger");
+    Stage away;
+    away.add_node("house");
+    away.shot.camera.position = glm::dvec3(0, 0, 2e17);
+    EXPECT_EQ(message_of([&] { away.snapshot(); }),
+              "stage.yaml:9:1: error: the camera is 2e+17 m from what it looks at, or moves that far, at 0 s\n  expected at most 1e+17 m");
+}
+
+TEST(MotionFrames, WhatIsFarAwayTogetherIsNot) {
+    Stage stage;
+    stage.node(stage.add_node("star")).translation = {2e17, 0, 0};
+    stage.shot.camera.position = glm::dvec3(2e17, 0, 1000);
+    stage.shot.camera.look_at = Track<glm::dvec3>(glm::dvec3(2e17, 0, 0));
+    EXPECT_EQ(stage.snapshot().instances.size(), 1u);
+}
+
 TEST(MotionFrames, ArePreciseFarFromTheOrigin) {
     Stage stage;
     constexpr double kFar = 1e7;

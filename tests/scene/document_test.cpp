@@ -184,6 +184,7 @@ TEST(Document, TextThatIsNoGltf) {
     const GltfBuilder file;
     EXPECT_EQ(file.error_of(file.save_text("x.gltf", "")), "x.gltf: error: is empty\n  expected a glTF 2.0 file (.gltf or .glb)");
     EXPECT_THAT(file.error_of(file.save_text("x.gltf", "hello")), HasSubstr("x.gltf: error: is not valid JSON: parse error at line 1, column 1"));
+    EXPECT_EQ(file.error_of(file.save_text("x.gltf", R"({"asset": {"version": "2.0"}, "scene": 1e400})")), "x.gltf: error: is not valid JSON: number overflow parsing '1e400'\n  expected a glTF 2.0 file (.gltf or .glb)");
     EXPECT_EQ(file.error_of(file.save_text("x.gltf", "[1]")), "x.gltf: error: its JSON is not an object\n  expected a glTF 2.0 file (.gltf or .glb)");
     EXPECT_EQ(file.error_of(file.save_text("x.gltf", std::string(1000000, '['))), "x.gltf: error: its JSON nests 1000000 levels deep\n  expected at most 64 levels");
     EXPECT_EQ(file.error_of(file.folder()), "error: cannot read " + file.folder().string() + ": it is not a regular file\n  expected a glTF 2.0 file (.gltf or .glb); paths are relative to the shot file");

@@ -90,5 +90,12 @@ TEST_F(Overrides, ReportTheirOwnProblems) {
                 ::testing::HasSubstr("--video a.avi: error: output.video is 'a.avi'\n  expected a file that ends in"));
 }
 
+TEST_F(Overrides, HoldNoKeyTwice) {
+    ShotOverrides overrides;
+    overrides.set = {{"camera.dolly", "{ keys: { 1 s: 0 m, 1 s: 1 m } }"}};
+    EXPECT_EQ(errors_of(kBase, overrides), "--set camera.dolly={ keys: { 1 s: 0 m, 1 s: 1 m } }: error: duplicate key '1 s'\n"
+                                           "  it is given twice; keep one of the two");
+}
+
 }  // namespace
 }  // namespace kadr

@@ -32,6 +32,15 @@ inline Mask<F> first_lanes(int n) {
     return m;
 }
 
+/// Whether Embree takes a ray from here, in this direction. Where it is built with its assertions, as Debian's is, it ends
+/// the program on rays that are not finite, and on coordinates above 1.844e18.
+template <class F>
+inline Mask<F> is_traceable(Vec3<F> origin, Vec3<F> direction) {
+    const F largest(1e18f);
+    const auto within = [&](Vec3<F> v) { return (abs(v.x) < largest) & (abs(v.y) < largest) & (abs(v.z) < largest); };
+    return within(origin) & within(direction);
+}
+
 template <class F, unsigned R, IntegratorKind kIntegrator>
 class Driver final : public TileDriver {
     static constexpr int N = kernels::kLanes<F>;
@@ -116,8 +125,7 @@ private:
         UInt<F> slot;
         PathState<F> path = load_path<F>(in, at, slot);
         Mask<F> active = first_lanes<F>(in.count - at);
-        // Debian's Embree aborts the process on a ray that is not finite.
-        const Mask<F> finite = is_finite(path.origin) & is_finite(path.direction) & is_finite(path.beta);
+        const Mask<F> finite = is_traceable(path.origin, path.direction) & is_finite(path.beta);
         if (any(active & !finite)) drop(slot, bits(active & !finite));
         active = active & finite;
         const unsigned lanes = bits(active);
@@ -334,7 +342,7 @@ private:
     }
 
     void queue_shadow(const ShadowRay<F>& ray, const PathState<F>& path, UInt<F> slot) {
-        const Mask<F> finite = is_finite(ray.origin) & is_finite(ray.direction) & is_finite(ray.radiance);
+        const Mask<F> finite = is_traceable(ray.origin, ray.direction) & is_finite(ray.radiance);
         const unsigned dropped = bits(ray.active & !finite);
         if (dropped) drop(slot, dropped);
         const unsigned mask = bits(ray.active & finite);

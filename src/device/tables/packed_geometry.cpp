@@ -1,5 +1,9 @@
 #include "device/tables/packed_geometry.h"
 
+#include <utility>
+
+#include "device/tables/subdivide.h"
+
 namespace kadr {
 namespace {
 
@@ -24,8 +28,8 @@ PackedGeometry::PackedGeometry(const GeometryData& source, const glm::dmat4& wor
     const bool mirrored = glm::determinant(linear) < 0;
     const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
     allocate(source);
-    for (std::size_t i = 0; i < source.positions.size(); ++i)
-        vertices[i].position = to_float(linear * to_double(source.positions[i]) + shift);
+    std::vector<glm::dvec3> positions(source.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = linear * to_double(source.positions[i]) + shift;
     for (std::size_t i = 0; i < source.normals.size(); ++i)
         vertices[i].normal = to_float(glm::normalize(normal_matrix * to_double(source.normals[i])));
     tangents.resize(source.tangents.size());
@@ -36,9 +40,31 @@ PackedGeometry::PackedGeometry(const GeometryData& source, const glm::dmat4& wor
         const kernels::Vec3f v = to_float(length > 0 ? d / length : d);
         tangents[i] = {v.x, v.y, v.z, mirrored ? -t.w : t.w};
     }
+    subdivide(source, positions);
+    for (std::size_t i = 0; i < positions.size(); ++i) vertices[i].position = to_float(positions[i]);
     if (!mirrored) return;
-    indices = source.indices;  // a mirror turns the winding round; turn it back, so that the front stays the front
+    if (indices.empty()) indices = source.indices;
+    // A mirror turns the winding round; turn it back, so that the front stays the front.
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
+}
+
+/// Attributes in the middle of an edge are the mean of its ends', as interpolation over the whole triangle has them.
+void PackedGeometry::subdivide(const GeometryData& source, std::vector<glm::dvec3>& positions) {
+    Subdivision finer = subdivide_near_origin(positions, source.indices);
+    if (finer.indices.empty()) return;
+    indices = std::move(finer.indices);
+    uv1 = source.uv[1];
+    colors = source.colors;
+    const auto mean = [](kernels::Vec4f a, kernels::Vec4f b) {
+        return kernels::Vec4f{0.5f * (a.x + b.x), 0.5f * (a.y + b.y), 0.5f * (a.z + b.z), 0.5f * (a.w + b.w)};
+    };
+    for (const Midpoint& m : finer.added) {
+        const kernels::Vertex a = vertices[m.a], b = vertices[m.b];
+        vertices.push_back({{0, 0, 0}, (a.normal + b.normal) * 0.5f, (a.uv + b.uv) * 0.5f});
+        if (!tangents.empty()) tangents.push_back(mean(tangents[m.a], tangents[m.b]));
+        if (!uv1.empty()) uv1.push_back((uv1[m.a] + uv1[m.b]) * 0.5f);
+        if (!colors.empty()) colors.push_back(mean(colors[m.a], colors[m.b]));
+    }
 }
 
 kernels::Geometry PackedGeometry::view(const GeometryData& source) const {
@@ -46,10 +72,10 @@ kernels::Geometry PackedGeometry::view(const GeometryData& source) const {
     g.vertices = vertices.data();
     g.vertex_count = static_cast<unsigned>(vertices.size());
     g.indices = indices.empty() ? source.indices.data() : indices.data();
-    g.triangle_count = static_cast<unsigned>(source.indices.size() / 3);
+    g.triangle_count = static_cast<unsigned>((indices.empty() ? source.indices.size() : indices.size()) / 3);
     if (!source.tangents.empty()) g.tangents = tangents.empty() ? source.tangents.data() : tangents.data();
-    if (!source.uv[1].empty()) g.uv1 = source.uv[1].data();
-    if (!source.colors.empty()) g.colors = source.colors.data();
+    if (!source.uv[1].empty()) g.uv1 = uv1.empty() ? source.uv[1].data() : uv1.data();
+    if (!source.colors.empty()) g.colors = colors.empty() ? source.colors.data() : colors.data();
     return g;
 }
 

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "frame/camera_keys.h"
+
+namespace kadr {
+
+/// How far away what a camera shows is, to a factor: the scale for "precise enough". What the shot's camera looks at; of an
+/// authored camera, which looks at nothing by name, its own hint, unless the nearest thing in its view is more than
+/// eight times nearer or a thousand times farther.
+double seen_distance(const BoundShot& shot, const CameraState& camera, double time_s);
+
+}  // namespace kadr
