@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "device/requirement_names.h"
+
 namespace kadr {
 namespace {
 
@@ -55,9 +57,11 @@ std::string sampling_text(const SamplingReport& s) {
 
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
-    return fmt::format("  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
+    return fmt::format("  kernel needs {}, compiled for {}\n"
+                       "  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
                        "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}\n  samples a pixel {}",
-                       device.rays, device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
+                       names_of_requirements(device.required), names_of_requirements(device.compiled), device.rays,
+                       device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
                        device.instances, device.moving_instances, device.flattened_triangles, device.structures.built,
                        device.structures.updated, device.structures.kept, motion_text(report.motion), sampling_text(report.sampling));
 }
@@ -186,7 +190,8 @@ private:
 };
 
 Json statistics_json(const DeviceStatistics& device) {
-    return {{"pixel_samples", device.pixel_samples}, {"rays", device.rays},
+    return {{"kernel", {{"needs", names_of_requirements(device.required)}, {"compiled_for", names_of_requirements(device.compiled)}}},
+            {"pixel_samples", device.pixel_samples}, {"rays", device.rays},
             {"dropped_samples", device.dropped_samples}, {"load_s", device.load_s},
             {"set_frame_s", device.set_frame_s}, {"render_s", device.render_s},
             {"instances", device.instances}, {"moving_instances", device.moving_instances},

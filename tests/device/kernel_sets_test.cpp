@@ -8,6 +8,7 @@
 #include "device/embree/embree_device.h"
 #include "device/embree/kernel_sets.h"
 #include "device/random_scene.h"
+#include "device/requirement_names.h"
 #include "device/same_picture.h"
 
 namespace kadr::test {
@@ -75,6 +76,17 @@ TEST(CompiledSet, IsTheFirstThatHoldsWhatIsNeeded) {
         }
     EXPECT_EQ(compiled_set(IntegratorKind::path, 0), 0u);
     EXPECT_EQ(compiled_set(IntegratorKind::direct, kEmitters), 0u) << "the analytic model meets no lights";
+}
+
+TEST(RequirementNames, NameEveryRequirementOnce) {
+    unsigned named = 0;
+    for (const RequirementName& requirement : kRequirementNames) {
+        EXPECT_EQ(named & requirement.bit, 0u) << requirement.name;
+        named |= requirement.bit;
+    }
+    EXPECT_EQ(named, kernels::requirement::kAll);
+    EXPECT_EQ(names_of_requirements(kernels::requirement::kMaps | kernels::requirement::kEmitters), "maps emitters");
+    EXPECT_EQ(names_of_requirements(0), "nothing");
 }
 
 /// Sets KADR_KERNEL_SET while it lives.

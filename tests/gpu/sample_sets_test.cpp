@@ -7,6 +7,7 @@
 #include <string>
 
 #include "device/embree/embree_scene.h"
+#include "device/requirement_names.h"
 #include "frame/snapshot.h"
 #include "kernels/gpu/entry_points.h"
 #include "render/loaded_shot.h"
@@ -19,13 +20,7 @@ namespace fs = std::filesystem;
 
 /// As in the list: the integrator and the names of the requirements.
 std::string name_of(kernels::IntegratorKind integrator, unsigned requirements) {
-    using namespace kernels::requirement;
-    std::string name = integrator == kernels::IntegratorKind::path ? "path:" : "direct:";
-    const std::pair<unsigned, const char*> names[] = {
-        {kMaps, " maps"}, {kTransforms, " transforms"}, {kEmitters, " emitters"}, {kDeformation, " deformation"}};
-    for (const auto& [bit, text] : names)
-        if ((requirements & bit) != 0) name += text;
-    return name;
+    return (integrator == kernels::IntegratorKind::path ? "path: " : "direct: ") + names_of_requirements(requirements);
 }
 
 std::set<std::string> listed() {

@@ -184,7 +184,7 @@ TEST(TraceKernels, AFailedCompilationIsAnError) {
         FAIL();
     } catch (const RenderError& error) {
         EXPECT_THAT(error.what(),
-                    ::testing::StartsWith("cannot compile the kernel kadr_direct for requirement set 2 (what HIPRT "
+                    ::testing::StartsWith("cannot compile the kernel kadr_direct for transforms (what HIPRT "
                                           "printed above says why): HIPRT reports an internal error"));
     }
 }

@@ -112,7 +112,7 @@ def main():
     options.kadr = options.kadr.resolve()
     with tempfile.TemporaryDirectory(prefix="kadr-kernels-") as folder:
         options.folder = pathlib.Path(folder)
-        report = {"speed": speed, "unused": unused}[options.mode](options)
+        report = {"speed": speed, "unused": speed}[options.mode](options)
     if options.output:
         options.output.write_text(json.dumps({"mode": options.mode, "machine": machine(), "report": report}, indent=1) + "\n")
 

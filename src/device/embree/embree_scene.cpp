@@ -85,7 +85,7 @@ void EmbreeScene::set_frame(const SceneSnapshot& snapshot) {
     view_.keys = keys_.data();
     if (!same_geometry || !same_emission) emitters_.set(snapshot, view_);
     emitters_.fill(view_.lights);
-    if (!same_geometry) materials_.note_shown(instances_, geometries_);
+    if (!same_geometry) materials_.note_shown(snapshot, instances_, geometries_);
     lights_.set(snapshot.light_keys, snapshot.lights);
     lights_.fill(view_.lights);
     fill_environment(snapshot.environment, environment_, view_.lights);

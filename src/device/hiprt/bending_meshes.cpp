@@ -21,11 +21,14 @@ const BendingMeshes::Entry& BendingMeshes::find(const SceneSnapshot& snapshot, i
 void BendingMeshes::set_frame(const SceneSnapshot& snapshot, const std::vector<bool>& filtered) {
     built_ = updated_ = kept_ = 0;
     blurs_ = false;
+    std::vector<bool> shown(snapshot.deformed.size(), false);
+    for (const SnapshotInstance& instance : snapshot.instances)
+        if (instance.deformed >= 0 && instance.mask != 0) shown[static_cast<std::size_t>(instance.deformed)] = true;
     for (std::size_t i = 0; i < snapshot.deformed.size(); ++i) {
         const std::shared_ptr<const DeformedMesh>& mesh = snapshot.deformed[i];
         const GeometryData& source = scene_.geometries[mesh->geometry];
         if (source.indices.empty()) continue;
-        blurs_ = blurs_ || mesh->key_count > 1;
+        blurs_ = blurs_ || (shown[i] && mesh->key_count > 1);
         check_mesh_size(source);
         update(entries_[mesh->number], mesh, filtered[i]);
     }

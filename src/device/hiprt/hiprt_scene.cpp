@@ -95,7 +95,7 @@ void HiprtScene::build_geometry(const SceneSnapshot& snapshot) {
     require_meshes(snapshot);
     tables_ = make_instance_tables(snapshot, scene_, [&](std::size_t i) { return mesh_of(snapshot, i); });
     host_geometries_ = list_geometries(snapshot, true);
-    materials_.note_shown(tables_.instances, host_geometries_);
+    materials_.note_shown(snapshot, tables_.instances, host_geometries_);
     instances_.set(memory_, uploads_, tables_.instances);
     motions_.set(memory_, uploads_, tables_.motions);
     matrices_.set(memory_, uploads_, tables_.matrices);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "device/hiprt/hiprt_error.h"
+#include "device/requirement_names.h"
 #include "kernels/gpu/entry_points.h"
 
 namespace kadr {
@@ -74,8 +75,8 @@ hiprt::Function TraceKernels::get(const KernelNeed& need) {
                                              source.module.c_str(), 0, nullptr, nullptr,
                                              static_cast<std::uint32_t>(options.size()), options.data(), geometry_types,
                                              ray_types, need.functions ? names : nullptr, &function, nullptr, true),
-          fmt::format("compile the kernel {} for requirement set {} (what HIPRT printed above says why)",
-                      source.function, need.requirements));
+          fmt::format("compile the kernel {} for {} (what HIPRT printed above says why)",
+                      source.function, names_of_requirements(need.requirements)));
     compiled_[need] = function;
     return function;
 }

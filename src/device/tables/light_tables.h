@@ -8,7 +8,7 @@
 
 namespace kadr {
 
-/// The punctual and area lights of a frame, those that have a surface first.
+/// The punctual and area lights of a frame, those that have a surface first. What is out the whole time is left out.
 template <class T>
 class LightTablesOf {
 public:

@@ -5,10 +5,12 @@
 namespace kadr {
 namespace {
 
+bool is_zero(const kernels::Vec3f& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
 bool has_maps(const kernels::Material& m) {
     return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 ||
            m.metallic_roughness_texture.texture >= 0 || m.normal_texture.texture >= 0 ||
-           m.emissive_texture.texture >= 0;
+           (m.emissive_texture.texture >= 0 && !is_zero(m.emission));
 }
 
 bool equal(const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -26,13 +28,15 @@ bool MaterialTable::set(const SceneSnapshot& snapshot) {
     return same;
 }
 
-void MaterialTable::note_shown(std::span<const kernels::Instance> instances,
+void MaterialTable::note_shown(const SceneSnapshot& snapshot, std::span<const kernels::Instance> instances,
                                std::span<const kernels::Geometry> geometries) {
     std::vector<bool> seen(count(), false);
     shows_colors_ = false;
-    for (const kernels::Instance& instance : instances) {
-        seen[instance.material] = true;
-        shows_colors_ = shows_colors_ || geometries[instance.geometry].colors;
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const kernels::Geometry& geometry = geometries[instances[i].geometry];
+        if (snapshot.instances[i].mask == 0 || geometry.triangle_count == 0) continue;
+        seen[instances[i].material] = true;
+        shows_colors_ = shows_colors_ || geometry.colors;
     }
     shown_.clear();
     for (unsigned material = 0; material < seen.size(); ++material)

@@ -18,8 +18,11 @@ public:
     /// Takes the snapshot's materials. How a material covers (its alpha mode, its sides) never changes within a shot,
     /// so structures stay. @return whether everything emits what it did before
     bool set(const SceneSnapshot& snapshot);
-    /// Notes what is shown: which materials, and whether some mesh has colours at its vertices.
-    void note_shown(std::span<const kernels::Instance> instances, std::span<const kernels::Geometry> geometries);
+    /// Notes what is shown: which materials, and whether some mesh has colours at its vertices. What is hidden, or has no
+    /// triangles, asks for nothing.
+    /// @param instances  those of the snapshot, in its order
+    void note_shown(const SceneSnapshot& snapshot, std::span<const kernels::Instance> instances,
+                    std::span<const kernels::Geometry> geometries);
 
     const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
     std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }

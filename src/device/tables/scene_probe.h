@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    static constexpr unsigned kSet = kernels::requirement::kAll | kernels::requirement::kDeformation;
+    static constexpr unsigned kSet = kernels::requirement::kAll;
 
     kernels::Interaction<T> interaction(const kernels::Hit<T>& hit, T time, kernels::Vec3<T> to_viewer) const {
         return kernels::make_interaction<T, kSet>(scene_, hit, time, to_viewer, true);
