@@ -24,14 +24,14 @@ template <class T>
 SHARED_FN void add_surface(const SampleResult<T>& s, FilmSurface& sums) {
     const T albedo[3] = {s.albedo.x, s.albedo.y, s.albedo.z}, normal[3] = {s.normal.x, s.normal.y, s.normal.z};
     for (int c = 0; c < 3; ++c) {
-        sums.albedo[c] += static_cast<float>(albedo[c] * s.light);
-        sums.normal[c] += static_cast<float>(normal[c] * s.light);
+        sums.albedo[c] += albedo[c] * s.light;
+        sums.normal[c] += normal[c] * s.light;
     }
-    sums.motion[0] += static_cast<float>(s.motion.x * s.light);
-    sums.motion[1] += static_cast<float>(s.motion.y * s.light);
+    sums.motion[0] += s.motion.x * s.light;
+    sums.motion[1] += s.motion.y * s.light;
     if (!s.met_surface || !is_finite(s.depth)) return;
-    sums.depth += static_cast<float>(s.depth * s.light);
-    sums.depth_weight += static_cast<float>(s.light);
+    sums.depth += s.depth * s.light;
+    sums.depth_weight += s.light;
 }
 
 /// @return false: the sample is not finite, and was not added
@@ -41,12 +41,12 @@ SHARED_FN bool add_sample(const FilmView& film, unsigned long pixel, const Sampl
     if (!(abs(sum) <= 3.4028234e38f)) return false;
     ++film.samples[pixel];
     const T w = s.weight * s.light;
-    if (film.weights) film.weights[pixel] += static_cast<float>(s.light);
+    if (film.weights) film.weights[pixel] += s.light;
     FilmBeauty& beauty = film.beauty[pixel];
-    beauty.r += static_cast<float>(s.radiance.x * w);
-    beauty.g += static_cast<float>(s.radiance.y * w);
-    beauty.b += static_cast<float>(s.radiance.z * w);
-    beauty.alpha += static_cast<float>(s.alpha * w);
+    beauty.r += s.radiance.x * w;
+    beauty.g += s.radiance.y * w;
+    beauty.b += s.radiance.z * w;
+    beauty.alpha += s.alpha * w;
     if (film.surface) add_surface(s, film.surface[pixel]);
     return true;
 }

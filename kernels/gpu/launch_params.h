@@ -13,15 +13,15 @@ inline constexpr int kBlockWidth = 8, kBlockHeight = 8;
 
 /// A pixel's sums over the samples of one half of the film.
 struct FilmBeauty {
-    float r, g, b, alpha;
+    double r, g, b, alpha;
 };
 
 /// A pixel's sums of the data layers, over both halves; depth and motion over the samples that met a surface, whose
 /// weight is depth_weight.
 struct FilmSurface {
-    float albedo[3], normal[3];
-    float depth, depth_weight;
-    float motion[2];
+    double albedo[3], normal[3];
+    double depth, depth_weight;
+    double motion[2];
 };
 
 /// The film as it lies on the device, [y][x] of the whole image: one half's sums, and the layers, which the halves
@@ -29,7 +29,7 @@ struct FilmSurface {
 struct FilmView {
     FilmBeauty* beauty;
     unsigned* samples;     ///< kept samples of the half
-    float* weights;        ///< sums of the samples' shares of the light; null: the film is not weighted
+    double* weights;       ///< sums of the samples' shares of the light; null: the film is not weighted
     FilmSurface* surface;  ///< null: no data layers
 };
 
@@ -71,7 +71,7 @@ inline constexpr unsigned kCount = 2;
 }  // namespace geometry_type
 
 static_assert(sizeof(void*) == 8 && sizeof(long) == 8 && sizeof(bool) == 1, "the widths that host and device share");
-static_assert(sizeof(FilmBeauty) == 16 && sizeof(FilmSurface) == 40 && sizeof(FilmView) == 32,
+static_assert(sizeof(FilmBeauty) == 32 && sizeof(FilmSurface) == 80 && sizeof(FilmView) == 32,
               "copied to the host's film");
 static_assert(sizeof(LaunchCounters) == 32, "read back by the host");
 static_assert(sizeof(Material) == 212 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&

@@ -19,6 +19,7 @@
 #include "render/reel_job.h"
 #include "render/reel_plan.h"
 #include "shot/shot_parser.h"
+#include "stress/report.h"
 
 namespace kadr {
 namespace {
@@ -250,11 +251,23 @@ std::string stress_line(const stress::CellResult& r) {
     return line + fmt::format("  {:.2f} s\n", r.seconds);
 }
 
+void print_stress_summary(const Invocation& invocation, const std::vector<stress::CellResult>& results, const std::filesystem::path& page) {
+    const stress::RayFigures rays = stress::total_rays(results);
+    if (invocation.json)
+        return print(json_line({{"event", "summary"}, {"page", page.string()}, {"cells", results.size()}, {"shadow_rays", rays.shadow_rays}, {"false_shadows", rays.false_shadows}, {"leaks", rays.leaks}}));
+    print("\nsafe ranges:\n");
+    for (const stress::SafeRange& range : stress::safe_ranges(results)) print(fmt::format("  {:<18} {}{}\n", range.axis->name, range.text(), range.complete ? "" : "   (the sweep goes on)"));
+    print(fmt::format("{} camera rays, {} shadow rays: {} holes, {} wrong surfaces, {} false shadows, {} leaks\nreport: {}\n", rays.camera_rays, rays.shadow_rays, rays.holes,
+                      rays.wrong_surfaces, rays.false_shadows, rays.leaks, page.string()));
+}
+
 int run_stress(const Invocation& invocation) {
     const auto results = stress::run_sweep(invocation.stress, [&](const stress::CellResult& result, std::size_t, std::size_t) {
         print(stress_line(result));
         std::fflush(stdout);
     });
+    const std::filesystem::path page = stress::write_report(results, invocation.stress.output);
+    print_stress_summary(invocation, results, page);
     return std::all_of(results.begin(), results.end(), [](const stress::CellResult& r) { return r.sound(); }) ? kDone : kFailed;
 }
 

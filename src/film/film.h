@@ -38,10 +38,11 @@ public:
     int height() const { return height_; }
     const FilmLayers& layers() const { return layers_; }
 
-    struct Beauty { float r = 0, g = 0, b = 0, alpha = 0; };
+    /// In double: a float sum of a million equal samples is off by percents, since each is rounded to the sum's last place.
+    struct Beauty { double r = 0, g = 0, b = 0, alpha = 0; };
     /// Sums over samples, times their weight where the film is weighted; normal in world space; depth (metres along the view axis) and motion (pixels since the previous
     /// frame, x right, y down) over the samples that hit a surface, whose number is depth_weight.
-    struct Surface { float albedo[3] = {}, normal[3] = {}; float depth = 0; float depth_weight = 0; float motion[2] = {}; };
+    struct Surface { double albedo[3] = {}, normal[3] = {}; double depth = 0; double depth_weight = 0; double motion[2] = {}; };
 
     Beauty& beauty(int x, int y, int half = 0) { return beauty_[half][index(x, y)]; }
     const Beauty& beauty(int x, int y, int half = 0) const { return beauty_[half][index(x, y)]; }
@@ -49,12 +50,12 @@ public:
     bool weighted() const { return weighted_; }
     /// Sum of the samples' shares of the light over the shutter, about 1 each; what sums are divided by instead of the
     /// number of samples. Only when weighted().
-    float& weight(int x, int y, int half = 0) { return weights_[half][index(x, y)]; }
+    double& weight(int x, int y, int half = 0) { return weights_[half][index(x, y)]; }
     Surface& surface(int x, int y) { return surface_[index(x, y)]; }     ///< only when layers().any_surface()
 
     std::uint32_t samples_of_both(int x, int y) const { return samples_[0][index(x, y)] + samples_[1][index(x, y)]; }
     /// What sums of a half are divided by: its number of samples, or their shares of the light.
-    float divisor(int x, int y, int half) const;
+    double divisor(int x, int y, int half) const;
     /// Mean R, G and B of a half. Only where its divisor is above zero; not finite where the sums overflowed.
     struct Color { float r, g, b; };
     Color mean(int x, int y, int half) const;
@@ -71,7 +72,7 @@ private:
     bool weighted_ = false;
     std::vector<Beauty> beauty_[kHalves];
     std::vector<std::uint32_t> samples_[kHalves];
-    std::vector<float> weights_[kHalves];
+    std::vector<double> weights_[kHalves];
     std::vector<Surface> surface_;
 };
 

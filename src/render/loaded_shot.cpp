@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "frame/precision.h"
 #include "scene/scene_files.h"
 
 namespace kadr {
@@ -49,6 +50,8 @@ std::vector<Diagnostic> LoadedShot::warnings() const {
     std::vector<Diagnostic> all = shot_.warnings;
     all.insert(all.end(), scene_.warnings.begin(), scene_.warnings.end());
     all.insert(all.end(), bound_.warnings().begin(), bound_.warnings().end());
+    const std::vector<Diagnostic> precision = precision_warnings(bound_);
+    all.insert(all.end(), precision.begin(), precision.end());
     return all;
 }
 

@@ -26,7 +26,7 @@ public:
     const BoundShot& bound() const { return bound_; }
     /// What of the files was not read, and why.
     const std::vector<Unread>& left_out() const { return left_out_; }
-    /// Those of the shot, the scenes and the binding, in this order.
+    /// Those of the shot, the scenes, the binding and the numbers' precision, in this order.
     std::vector<Diagnostic> warnings() const;
 
 private:

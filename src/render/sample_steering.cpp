@@ -21,9 +21,9 @@ Image half_of(const Film& film, int half, double scale) {
     image.pixels.reserve(4 * static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()));
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
-            const float n = film.divisor(x, y, half);
+            const double n = film.divisor(x, y, half);
             const Film::Color color = n > 0 ? film.mean(x, y, half) : Film::Color{0, 0, 0};
-            const float alpha = n > 0 ? film.beauty(x, y, half).alpha / n : 0;
+            const auto alpha = static_cast<float>(n > 0 ? film.beauty(x, y, half).alpha / n : 0);
             for (const float value : {color.r, color.g, color.b})
                 image.pixels.push_back(static_cast<float>(scale) * value);
             image.pixels.push_back(alpha);

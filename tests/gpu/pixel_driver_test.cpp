@@ -63,7 +63,7 @@ private:
     std::size_t pixels_;
     std::vector<kernels::FilmBeauty> beauty_[Film::kHalves];
     std::vector<unsigned> samples_[Film::kHalves];
-    std::vector<float> weights_[Film::kHalves];
+    std::vector<double> weights_[Film::kHalves];
     std::vector<kernels::FilmSurface> surface_;
 };
 

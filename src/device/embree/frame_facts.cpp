@@ -21,7 +21,7 @@ bool shows_maps(const Scene& scene, const SceneSnapshot& snapshot, MaterialTable
         if (!scene.geometries[i].colors.empty()) geometries[i].colors = scene.geometries[i].colors.data();
     std::vector<kernels::Instance> instances;
     for (const SnapshotInstance& instance : snapshot.instances) instances.push_back({instance.geometry, instance.material, instance.id});
-    materials.note_shown(instances, geometries);
+    materials.note_shown(snapshot, instances, geometries);
     return materials.shows_maps();
 }
 

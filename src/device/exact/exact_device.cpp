@@ -43,7 +43,7 @@ struct Sums {
 
     std::vector<kernels::FilmBeauty> beauty;
     std::vector<unsigned> samples;
-    std::vector<float> weights;
+    std::vector<double> weights;
 };
 
 class ExactDevice final : public Device, private Probe {

@@ -75,7 +75,7 @@ const T* GpuFilm::read_back(const DeviceBuffer<T>& buffer, std::size_t& offset) 
 void GpuFilm::add_to(Film& film, int half) {
     const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(y1_ - y0_);
     const std::size_t bytes =
-        count * (sizeof(kernels::FilmBeauty) + sizeof(unsigned) + sizeof(float) + sizeof(kernels::FilmSurface));
+        count * (sizeof(kernels::FilmBeauty) + sizeof(unsigned) + sizeof(double) + sizeof(kernels::FilmSurface));
     if (pinned_.bytes() < bytes) {
         pinned_ = {};
         pinned_ = PinnedMemory(memory_.runtime(), bytes);
@@ -83,7 +83,7 @@ void GpuFilm::add_to(Film& film, int half) {
     std::size_t offset = 0;
     const kernels::FilmBeauty* beauty = read_back(beauty_, offset);
     const unsigned* samples = read_back(samples_, offset);
-    const float* weights = weighted_ ? read_back(weights_, offset) : nullptr;
+    const double* weights = weighted_ ? read_back(weights_, offset) : nullptr;
     const kernels::FilmSurface* surface = layered_ ? read_back(surface_, offset) : nullptr;
     stream_.synchronize("render on the GPU");
     std::size_t i = 0;

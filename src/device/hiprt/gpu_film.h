@@ -34,7 +34,7 @@ private:
     bool weighted_ = false, layered_ = false;
     DeviceBuffer<kernels::FilmBeauty> beauty_;
     DeviceBuffer<unsigned> samples_;
-    DeviceBuffer<float> weights_;
+    DeviceBuffer<double> weights_;
     DeviceBuffer<kernels::FilmSurface> surface_;
     PinnedMemory pinned_;
 };
