@@ -28,6 +28,17 @@ TEST(Film, NamesTheChannelsInOrder) {
                                      "depth.Z", "motion.X", "motion.Y", "samples.N", "error.Y"));
 }
 
+TEST(Film, AMillionSamplesAddUp) {
+    Film film(1, 1, {});
+    const float value = 0.1f;
+    for (int i = 0; i < 1'000'000; ++i) {
+        film.beauty(0, 0, i % 2).r += value;
+        ++film.samples(0, 0, i % 2);
+    }
+    // Sums of floats would be off by more than a percent: added to 50,000, a tenth counts as 0.1016.
+    EXPECT_EQ(film.develop().at(0, 0, 0), value);
+}
+
 TEST(Film, DividesSumsBySamples) {
     Film film(2, 1, all_layers());
     film.beauty(1, 0) = {4, 8, 12, 2};

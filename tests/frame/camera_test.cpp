@@ -167,5 +167,33 @@ TEST(RenderOrigin, StaysNearACameraFarAway) {
     EXPECT_EQ(render_origin(camera, 5), render_origin(camera + glm::dvec3(1, 1, 1), 5));
 }
 
+TEST(RenderSpace, CountsInMetresWherePicturesShowThingsOfEverydaySize) {
+    const glm::dvec3 forward(0, 0, -1);
+    for (const double shown : {0.25, 1.0, 1e3, 1e6}) EXPECT_EQ(render_space({1, 2, 3}, forward, shown, 1e-3, shown).unit_m, 1) << shown;
+    // Below and above, in the power of two below what is shown.
+    EXPECT_EQ(render_space({}, forward, 0.2, 1e-3, 0.2).unit_m, 0.125);
+    EXPECT_EQ(render_space({}, forward, 1e-9, 1e-3, 1e-9).unit_m, 0x1p-30);
+    EXPECT_EQ(render_space({}, forward, 3e9, 1e-3, 3e9).unit_m, 0x1p31);
+}
+
+TEST(RenderSpace, LiesAboutTheSubjectOfALongLens) {
+    const glm::dvec3 camera(1e6, 0, 3), forward(0, 1, 0);
+    const double distance = 2e4, pixel_rad = 1e-6;
+    const glm::dvec3 origin = render_space(camera, forward, distance, pixel_rad, 2).origin;
+    // Coordinates of the subject are held to a hundredth of its pixels.
+    const glm::dvec3 off = camera + forward * distance - origin;
+    EXPECT_LE(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) * 0x1p-24, 0.01 * pixel_rad * distance);
+    // A pixel of ordinary width keeps the origin near the camera.
+    EXPECT_EQ(render_space(camera, forward, distance, 1e-3, 2e4).origin, render_origin(camera, distance));
+}
+
+TEST(RenderSpace, ChangesCoordinatesWithoutRounding) {
+    const RenderSpace space{{64, -32, 8}, 0x1p-10};
+    EXPECT_EQ(space.from_world(glm::dvec3(64.5, -32, 7)), glm::dvec3(512, 0, -1024));
+    const glm::dmat4 m = space.from_world(glm::translate(glm::dmat4(1), {64, -32, 9}));
+    EXPECT_EQ(m[0][0], 1024);
+    EXPECT_EQ(m[3], glm::dvec4(0, 0, 1024, 1));
+}
+
 }  // namespace
 }  // namespace kadr
