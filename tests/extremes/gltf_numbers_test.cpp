@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "extremes/child.h"
 #include "extremes/full_scene.h"
+#include "extremes/numbers.h"
 #include "extremes/trial.h"
 #include "scene/uri.h"
 #include "shot/shot_parser.h"
@@ -20,8 +21,6 @@ namespace {
 using Json = nlohmann::json;
 
 using Bytes = std::vector<std::uint8_t>;
-
-constexpr std::size_t kMostMemory = std::size_t{1} << 30;  // a process with everything loaded takes a tenth
 
 /// As they stand in the text: JSON knows no NaN, and what no double holds must be refused by the reader of the text.
 constexpr const char* kNumbers[] = {"NaN", "Infinity", "1e400", "-1e400", "1e308", "-1e308", "1e39", "3.4028235e38", "-3.4028235e38", "1e20", "1e-20", "1e-320", "-0.0", "0", "0.5",
