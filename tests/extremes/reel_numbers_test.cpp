@@ -62,7 +62,7 @@ TEST_F(ReelNumbers, AreTakenOrRefusedWithTheirPlace) {
                 for (const char* number : kYamlNumbers) {
                     log.begin(slot.path + " = " + number);
                     const std::string found = refusal_of(slot, number);
-                    if (!found.empty() && found.find("--set ") == std::string::npos && found.find(".yaml:") == std::string::npos) log.complain(slot.path + " = " + number + ": " + found);
+                    if (!found.empty() && found.find("--set " + slot.path) == std::string::npos && found.find(".yaml:") == std::string::npos) log.complain(slot.path + " = " + number + ": " + found);
                 }
         });
         EXPECT_EQ(report.ended, "") << field.path << ": " << report.last;
