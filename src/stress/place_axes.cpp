@@ -41,7 +41,6 @@ void set_telephoto(Stage& stage, double ratio) {
 void set_field_of_view(Stage& stage, double degrees) {
     stage.object("Floor").scale = {1e4, 1, 1e4};
     stage.camera.vertical_fov_deg = degrees;
-    stage.camera.authored = true;
 }
 
 }  // namespace
