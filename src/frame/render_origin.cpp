@@ -5,11 +5,21 @@
 
 namespace kadr {
 
-glm::dvec3 render_origin(const glm::dvec3& camera_position, double subject_distance) {
-    constexpr double kCellDistances = 128;
-    const double distance = std::clamp(subject_distance, 1e-30, 1e30);
-    const double cell = std::exp2(std::floor(std::log2(kCellDistances * distance)));
-    const glm::dvec3 origin = glm::round(camera_position / cell) * cell;
+namespace {
+
+/// Of what is seen at the distance of the subject.
+double half_height_m(const CameraState& camera) {
+    return camera.orthographic ? camera.tan_half_height : camera.tan_half_height * camera.subject_distance;
+}
+
+}  // namespace
+
+glm::dvec3 render_origin(const CameraState& camera) {
+    constexpr double kCellDistances = 128, kCellHalfHeights = 512;
+    const glm::dvec3 subject = camera.position + camera.rotation * glm::dvec3(0, 0, -camera.subject_distance);
+    const double widest = std::clamp(std::min(kCellDistances * camera.subject_distance, kCellHalfHeights * half_height_m(camera)), 1e-28, 1e32);
+    const double cell = std::exp2(std::floor(std::log2(widest)));
+    const glm::dvec3 origin = glm::round(subject / cell) * cell;
     return origin + 0.0;  // -0 would be another value to a hash
 }
 

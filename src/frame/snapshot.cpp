@@ -202,8 +202,7 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
 class FrameSnapshots {
 public:
     FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
-        const CameraState camera = camera_at(shot, frame.open_s);
-        origin_ = render_origin(camera.position, camera.subject_distance);
+        origin_ = render_origin(camera_at(shot, frame.open_s));
     }
 
     std::vector<SceneSnapshot> make() {

@@ -153,18 +153,39 @@ TEST(CameraKeys, FollowAPanWithinTheTolerance) {
     }
 }
 
-TEST(RenderOrigin, IsTheWorldsOriginForScenesAroundIt) {
-    EXPECT_EQ(render_origin({3, -8, 20}, 5), glm::dvec3(0));
-    EXPECT_EQ(render_origin({0, 0, 1e-4}, 1e-4), glm::dvec3(0));
+/// Looks along -z.
+CameraState camera_with(const glm::dvec3& position, double subject_distance, double tan_half_height = 1) {
+    CameraState camera;
+    camera.position = position;
+    camera.subject_distance = subject_distance;
+    camera.tan_half_height = tan_half_height;
+    return camera;
 }
 
+TEST(RenderOrigin, IsTheWorldsOriginForScenesAroundIt) {
+    EXPECT_EQ(render_origin(camera_with({3, -8, 20}, 5)), glm::dvec3(0));
+    EXPECT_EQ(render_origin(camera_with({0, 0, 1e-4}, 1e-4)), glm::dvec3(0));
+    EXPECT_EQ(render_origin(camera_with({0, 0, 1e7}, 1e7, 1e-7)), glm::dvec3(0)) << "a telescope looks at it";
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 TEST(RenderOrigin, StaysNearACameraFarAway) {
-    const glm::dvec3 camera(1e7 + 0.3, -3e6, 12);
+    const glm::dvec3 position(1e7 + 0.3, -3e6, 12);
     for (const double distance : {0.01, 1.0, 5.0, 1000.0}) {
-        const glm::dvec3 off = camera - render_origin(camera, distance);
-        EXPECT_LE(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}), 64 * distance);
+        const glm::dvec3 subject = position - glm::dvec3(0, 0, distance);
+        EXPECT_LE(largest(subject - render_origin(camera_with(position, distance))), 64 * distance);
     }
-    EXPECT_EQ(render_origin(camera, 5), render_origin(camera + glm::dvec3(1, 1, 1), 5));
+    EXPECT_EQ(render_origin(camera_with(position, 5)), render_origin(camera_with(position + glm::dvec3(1, 1, 1), 5)));
+}
+
+TEST(RenderOrigin, StaysNearerToWhatNarrowViewsShow) {
+    const glm::dvec3 subject(1e7 + 0.3, -3e6, 12);
+    for (const double tan_half_height : {0.1, 1e-3, 1e-6}) {
+        const double distance = 1e5, half_height = tan_half_height * distance;
+        const glm::dvec3 off = subject - render_origin(camera_with(subject + glm::dvec3(0, 0, distance), distance, tan_half_height));
+        EXPECT_LE(largest(off), 256 * half_height);
+    }
 }
 
 }  // namespace
