@@ -152,10 +152,13 @@ CameraState placed_by_node(const BoundShot& shot, double time_s) {
     // Scale does not belong to a camera (glTF 2.0, 3.10): the directions of the axes are all that counts.
     camera.rotation = look_rotation(glm::normalize(forward), glm::dvec3(world[1]));
     // The near plane is the one hint of scale that an authored camera gives; artists put it at a hundredth or less.
-    camera.subject_distance = camera.focus_distance = std::max(1.0, 100 * source.znear);
+    camera.focus_distance = std::max(1.0, 100 * source.znear);
     if (source.orthographic && source.ymag == 0)
         refuse(shot.shot().camera, fmt::format("the ymag of camera '{}' is animated to 0 at {} s", source.name, format_number(time_s)), "expected a number other than 0");
     set_authored(camera, source, aspect_of(shot.shot().image));
+    // A narrow view shows what is far away: at least half a metre of it.
+    constexpr double kLeastHalfHeight_m = 0.25;
+    camera.subject_distance = camera.orthographic ? camera.focus_distance : std::max(camera.focus_distance, kLeastHalfHeight_m / camera.tan_half_height);
     return camera;
 }
 

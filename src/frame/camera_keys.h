@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "frame/frame_state.h"
-#include "frame/render_origin.h"
+#include "frame/render_space.h"
 #include "kernels/scene/scene_types.h"
 
 namespace kadr {

@@ -9,7 +9,7 @@
 #include "frame/frame_state.h"
 #include "frame/instance_list.h"
 #include "frame/reach.h"
-#include "frame/render_origin.h"
+#include "frame/render_space.h"
 
 namespace kadr {
 

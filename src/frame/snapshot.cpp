@@ -206,10 +206,7 @@ public:
     FrameSnapshots(const BoundShot& shot, const FrameTime& frame) : shot_(shot), frame_(frame) {
         CameraState camera = camera_at(shot, frame.open_s);
         camera.subject_distance = seen_distance(shot, camera, frame.open_s);
-        const double height = 2 * camera.tan_half_height;
-        space_ = render_space(camera.position, camera.rotation * glm::dvec3(0, 0, -1), camera.subject_distance,
-                              camera.orthographic ? 0 : height / shot.shot().image.height,
-                              camera.orthographic ? height : camera.subject_distance * std::min(height, 1.0));
+        space_ = render_space(camera);
     }
 
     std::vector<SceneSnapshot> make() {

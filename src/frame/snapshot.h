@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "frame/frame_state.h"
-#include "frame/render_origin.h"
+#include "frame/render_space.h"
 #include "frame/shared_list.h"
 #include "kernels/camera/shutter.h"
 #include "kernels/scene/motion_types.h"

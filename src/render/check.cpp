@@ -7,6 +7,7 @@
 #include "output/image_io.h"
 #include "render/clip_report.h"
 #include "render/denoising.h"
+#include "render/frame_memory.h"
 #include "render/loaded_shot.h"
 #include "render/output_plan.h"
 #include "render/render_job.h"
@@ -58,6 +59,7 @@ CheckReport check_shot(const std::filesystem::path& path, const ShotOverrides& o
             plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
         });
     collect(problems, [&] { denoiser_of(shot.render); });
+    collect(problems, [&] { check_frame_memory(shot); });
     if (shot.environment.image) collect(problems, [&] { image_io().read_metadata(*shot.environment.image); });
     for (Diagnostic& problem : colliding_patterns(shot.output, bound.frames)) problems.push_back(std::move(problem));
     check_folders(shot, bound.frames, problems);

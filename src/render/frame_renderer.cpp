@@ -7,6 +7,7 @@
 
 #include "output/view.h"
 #include "render/denoising.h"
+#include "render/frame_memory.h"
 #include "render/loaded_shot.h"
 #include "render/render_job.h"
 #include "render/sample_shares.h"
@@ -175,6 +176,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time
 
 RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FrameRequest& request) {
     stop_if_interrupted();
+    check_frame_memory(shot.shot());
     const Stopwatch watch;
     RenderedFrame frame;
     frame.motion = motion_report(shot, parts);

@@ -121,10 +121,11 @@ private:
 
 class Overrides {
 public:
-    Overrides(YamlDocument& document, std::filesystem::path folder) : document_(document), folder_(std::move(folder)) {}
+    /// @param prefix  what the command line has before the key paths of this document
+    Overrides(YamlDocument& document, std::filesystem::path folder, std::string_view prefix) : document_(document), folder_(std::move(folder)), prefix_(prefix) {}
 
     void set(const std::string& path, const std::string& value) {
-        const YamlSource& source = document_.add_source(value, fmt::format("--set {}={}", path, value), folder_, true);
+        const YamlSource& source = document_.add_source(value, fmt::format("--set {}{}={}", prefix_, path, value), folder_, true);
         try {
             YamlNode node = parse_yaml(source);
             Problems duplicates;
@@ -228,6 +229,7 @@ private:
 
     YamlDocument& document_;
     std::filesystem::path folder_;
+    std::string_view prefix_;
     std::vector<Diagnostic> problems_;
 };
 
@@ -235,14 +237,15 @@ private:
 
 std::vector<Diagnostic> apply_overrides(YamlDocument& document, const ShotOverrides& overrides,
                                         const std::filesystem::path& working_folder, const char* size_key) {
-    Overrides apply(document, working_folder);
+    const bool is_shot = std::string_view(size_key) == kShotSize;
+    Overrides apply(document, working_folder, is_shot ? "" : "reel.");
     for (const auto& [path, value] : overrides.nodes) apply.put_node(path, value);
     if (!overrides.quality.empty()) apply.put_quality(overrides.quality);
     for (const auto& [path, value] : overrides.set) apply.set(path, value);
     if (!overrides.frames.empty()) apply.put_text("--frames", "timing.frames", overrides.frames, true);
     if (!overrides.output.empty()) apply.put_text("--output", "output.frames", overrides.output, true);
     apply.put_samples(overrides);
-    if (std::string_view(size_key) == kShotSize) apply.fill_quality();  // a reel has no render section
+    if (is_shot) apply.fill_quality();  // a reel has no render section
     if (overrides.width > 0 && overrides.height > 0) apply.put_size(size_key, overrides.width, overrides.height);
     if (!overrides.video.empty()) apply.put_video(overrides.video);
     return apply.take_problems();

@@ -83,7 +83,7 @@ constexpr FieldSpec kTable[] = {
     {.path = "camera.look_at", .forms = kVector3 | kNode | kTrack | kMotion, .quantity = length, .fallback = "[0, 0, 0]", .doc = "the point or node in the middle of the picture", .example = "look_at: helmet/Visor"},
     {.path = "camera.up", .forms = kVector3 | kTrack, .fallback = "[0, 1, 0]", .doc = "direction that points up in the picture", .example = "up: [0, 1, 0]"},
     {.path = "camera.focal_length", .forms = kNumber | kTrack, .quantity = lens, .low = 1, .high = 10000, .fallback = "50 mm", .doc = "focal length of the lens; or give vertical_fov", .example = "focal_length: 35 mm"},
-    {.path = "camera.vertical_fov", .forms = kNumber | kTrack, .quantity = angle, .low = 0.01, .high = 179, .doc = "angle from the bottom to the top of the picture; or give focal_length", .example = "vertical_fov: 40 deg"},
+    {.path = "camera.vertical_fov", .forms = kNumber | kTrack, .quantity = angle, .low = 1e-6, .high = 179.9, .doc = "angle from the bottom to the top of the picture; or give focal_length", .example = "vertical_fov: 40 deg"},
     {.path = "camera.sensor", .forms = kSection, .doc = "the sensor behind the lens", .example = "sensor: { size: [36 mm, 24 mm], fit: auto }"},
     {.path = "camera.sensor.size", .forms = kVector2, .quantity = lens, .low = 0.1, .high = 1000, .fallback = "[36 mm, 24 mm]", .doc = "width and height", .example = "size: [36 mm, 24 mm]"},
     {.path = "camera.sensor.fit", .forms = kChoice, .choices = "auto|horizontal|vertical", .fallback = "auto", .doc = "side of the sensor that fills the picture; auto: the picture's longer side", .example = "fit: horizontal"},

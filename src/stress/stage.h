@@ -54,7 +54,7 @@ struct Placement {
 struct Camera {
     glm::dvec3 position{0}, look_at{0};
     double vertical_fov_deg = 30;
-    bool authored = false;  ///< stands in the glTF file, which knows wider and narrower views than a shot
+    bool authored = false;  ///< stands in the glTF file
 };
 
 struct Lamp {

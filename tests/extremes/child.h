@@ -26,7 +26,7 @@ private:
     int pipe_;
 };
 
-/// Does some work in a process of its own, which an endless loop does not outlive: it has a minute.
+/// Does some work in a process of its own, which an endless loop does not outlive: it has five minutes.
 /// @pre the calling process has no other threads
 ChildReport in_child(const std::function<void(ChildLog&)>& work);
 

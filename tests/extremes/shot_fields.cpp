@@ -94,6 +94,21 @@ constexpr Place kPlaces[] = {
     {"orbit", "camera.orbit", "{ radius: 6, to: 1 s, #: @ }"},
     {"shake.amplitude", "camera.shake", "{ amplitude: @ }"},
     {"shake", "camera.shake", "{ amplitude: 0.01, #: @ }"},
+    {"reel.fps", "reel.fps"},
+    {"reel.shots.in", "reel.shots.0.in", "@", "0.25"},
+    {"reel.shots.crossfade", "reel.shots.0.crossfade", "@", "0.25"},
+    {"reel.shots.fade_in.duration", "reel.shots.0.fade_in", "{ duration: @ }", "0.25"},
+    {"reel.shots.fade_in.from", "reel.shots.0.fade_in", "{ duration: 0.25, from: @ }"},
+    {"reel.shots.fade_in", "reel.shots.0.fade_in", "@", "0.25"},
+    {"reel.shots.fade_out.duration", "reel.shots.1.fade_out", "{ duration: @ }", "0.25"},
+    {"reel.shots.fade_out.to", "reel.shots.1.fade_out", "{ duration: 0.25, to: @ }"},
+    {"reel.shots.fade_out", "reel.shots.1.fade_out", "@", "0.25"},
+    {"reel.shots", "reel.shots.0.#"},
+    {"reel.sound", "reel.sound", "{ file: sound.wav, #: @ }"},
+    {"reel.output.video", "reel.output.video", "{ file: a.mp4, #: @ }"},
+    {"reel.output.png_bits", "reel.output.png_bits", "@", "8"},
+    {"reel.size", "reel.size", "@", "8"},
+    {"reel", "reel.#"},
 };
 
 /// Fields whose numbers stand in other fields' rows: of tracks and keys in every field that takes a track.
@@ -214,6 +229,8 @@ std::vector<NumberSlot> slots_of(const FieldSpec& field) {
     }
     return slots;
 }
+
+std::string reel_around_slots() { return "kadr-reel: 1\nshots: [ { shot: shot.yaml }, { shot: shot.yaml } ]\n"; }
 
 std::string shot_around_slots() {
     return R"(kadr: 1

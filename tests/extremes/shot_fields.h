@@ -10,7 +10,7 @@
 
 namespace kadr::test {
 
-/// A number in a shot: what `--set` it takes to put one there.
+/// A number in a shot or in a reel: what `--set` it takes to put one there.
 struct NumberSlot {
     std::string field;               ///< of the schema table
     std::string path;                ///< what is set
@@ -27,5 +27,7 @@ bool has_numbers(const FieldSpec& field);
 /// The shot around them: of scene.gltf (full_scene.h), "rig" and "ground", with one light of each kind. Frame 12 at 24 a second
 /// lies between keys at 0 s and 1 s.
 std::string shot_around_slots();
+/// The reel around those of the reel's own table: of shot.yaml, twice.
+std::string reel_around_slots();
 
 }  // namespace kadr::test

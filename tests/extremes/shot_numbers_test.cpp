@@ -4,17 +4,13 @@
 #include "base/error.h"
 #include "extremes/child.h"
 #include "extremes/full_scene.h"
+#include "extremes/numbers.h"
 #include "extremes/shot_fields.h"
 #include "extremes/trial.h"
 #include "stress/sun_image.h"
 
 namespace kadr::test {
 namespace {
-
-constexpr std::size_t kMostMemory = std::size_t{1} << 30;  // a process with everything loaded takes a tenth
-
-constexpr const char* kNumbers[] = {".nan", ".inf", "-.inf", "1e400", "1e308", "-1e308", "1e39", "1e20", "1e-20", "1e-40", "1e-320", "5e-324", "-0.0", "0", "-1", "1e9", "2147483648", "-2147483649",
-                                    "4294967296", "9223372036854775807", "123456789012345678901234567890"};
 
 class ShotNumbers : public testing::Test {
 protected:
@@ -67,7 +63,7 @@ TEST_F(ShotNumbers, AreTakenOrRefusedWithTheirPlace) {
         const ChildReport report = in_child([&](ChildLog& log) {
             const Scene shared = scene();
             for (const NumberSlot& slot : slots_of(field))
-                for (const char* number : kNumbers) {
+                for (const char* number : kYamlNumbers) {
                     const std::string what = described(slot, number);
                     log.begin(what);
                     try {

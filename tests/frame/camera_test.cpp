@@ -153,38 +153,56 @@ TEST(CameraKeys, FollowAPanWithinTheTolerance) {
     }
 }
 
-TEST(RenderOrigin, IsTheWorldsOriginForScenesAroundIt) {
-    EXPECT_EQ(render_origin({3, -8, 20}, 5), glm::dvec3(0));
-    EXPECT_EQ(render_origin({0, 0, 1e-4}, 1e-4), glm::dvec3(0));
+/// Looks along -z.
+CameraState camera_with(const glm::dvec3& position, double subject_distance, double tan_half_height = 1) {
+    CameraState camera;
+    camera.position = position;
+    camera.subject_distance = subject_distance;
+    camera.tan_half_height = tan_half_height;
+    return camera;
 }
 
+TEST(RenderOrigin, IsTheWorldsOriginForScenesAroundIt) {
+    EXPECT_EQ(render_origin(camera_with({3, -8, 20}, 5)), glm::dvec3(0));
+    EXPECT_EQ(render_origin(camera_with({0, 0, 1e-4}, 1e-4)), glm::dvec3(0));
+    EXPECT_EQ(render_origin(camera_with({0, 0, 1e7}, 1e7, 1e-7)), glm::dvec3(0)) << "a telescope looks at it";
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 TEST(RenderOrigin, StaysNearACameraFarAway) {
-    const glm::dvec3 camera(1e7 + 0.3, -3e6, 12);
+    const glm::dvec3 position(1e7 + 0.3, -3e6, 12);
     for (const double distance : {0.01, 1.0, 5.0, 1000.0}) {
-        const glm::dvec3 off = camera - render_origin(camera, distance);
-        EXPECT_LE(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}), 64 * distance);
+        const glm::dvec3 subject = position - glm::dvec3(0, 0, distance);
+        EXPECT_LE(largest(subject - render_origin(camera_with(position, distance))), 64 * distance);
     }
-    EXPECT_EQ(render_origin(camera, 5), render_origin(camera + glm::dvec3(1, 1, 1), 5));
+    EXPECT_EQ(render_origin(camera_with(position, 5)), render_origin(camera_with(position + glm::dvec3(1, 1, 1), 5)));
+}
+
+TEST(RenderOrigin, StaysNearerToWhatNarrowViewsShow) {
+    const glm::dvec3 subject(1e7 + 0.3, -3e6, 12);
+    for (const double tan_half_height : {0.1, 1e-3, 1e-6}) {
+        const double distance = 1e5, half_height = tan_half_height * distance;
+        const glm::dvec3 off = subject - render_origin(camera_with(subject + glm::dvec3(0, 0, distance), distance, tan_half_height));
+        EXPECT_LE(largest(off), 256 * half_height);
+    }
+}
+
+CameraState looking(double distance, double half_height) {
+    CameraState camera;
+    camera.subject_distance = distance;
+    camera.tan_half_width = camera.tan_half_height = half_height / distance;
+    return camera;
 }
 
 TEST(RenderSpace, CountsInMetresWherePicturesShowThingsOfEverydaySize) {
-    const glm::dvec3 forward(0, 0, -1);
-    for (const double shown : {0.25, 1.0, 1e3, 1e6}) EXPECT_EQ(render_space({1, 2, 3}, forward, shown, 1e-3, shown).unit_m, 1) << shown;
+    for (const double shown : {0.25, 1.0, 1e3, 1e6}) EXPECT_EQ(render_space(looking(2 * shown, shown / 2)).unit_m, 1) << shown;
     // Below and above, in the power of two below what is shown.
-    EXPECT_EQ(render_space({}, forward, 0.2, 1e-3, 0.2).unit_m, 0.125);
-    EXPECT_EQ(render_space({}, forward, 1e-9, 1e-3, 1e-9).unit_m, 0x1p-30);
-    EXPECT_EQ(render_space({}, forward, 3e9, 1e-3, 3e9).unit_m, 0x1p31);
-}
-
-TEST(RenderSpace, LiesAboutTheSubjectOfALongLens) {
-    const glm::dvec3 camera(1e6, 0, 3), forward(0, 1, 0);
-    const double distance = 2e4, pixel_rad = 1e-6;
-    const glm::dvec3 origin = render_space(camera, forward, distance, pixel_rad, 2).origin;
-    // Coordinates of the subject are held to a hundredth of its pixels.
-    const glm::dvec3 off = camera + forward * distance - origin;
-    EXPECT_LE(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) * 0x1p-24, 0.01 * pixel_rad * distance);
-    // A pixel of ordinary width keeps the origin near the camera.
-    EXPECT_EQ(render_space(camera, forward, distance, 1e-3, 2e4).origin, render_origin(camera, distance));
+    EXPECT_EQ(render_space(looking(1, 0.1)).unit_m, 0.125);
+    EXPECT_EQ(render_space(looking(1e-9, 1e-9)).unit_m, 0x1p-30);
+    EXPECT_EQ(render_space(looking(6e9, 1.5e9)).unit_m, 0x1p31);
+    // What a wide view shows at the subject's distance is wider than what matters.
+    EXPECT_EQ(render_space(looking(0.5, 1e9)).unit_m, 1);
 }
 
 TEST(RenderSpace, ChangesCoordinatesWithoutRounding) {

@@ -11,6 +11,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/fake_device.h"
+#include "render/frame_memory.h"
 #include "render/loaded_shot.h"
 #include "render/tiny_shot.h"
 
@@ -313,6 +314,25 @@ TEST_F(RenderJobTest, CheckFindsProblemsOfSeveralKindsAtOnceAndWritesNothing) {
         EXPECT_THAT(all, HasSubstr("13"));
     }
     EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+TEST_F(RenderJobTest, PicturesBeyondTheMachineAreRefusedBeforeTheyAreBegun) {
+    constexpr double kLargest_bytes = 65536.0 * 65536 * 72;  // of two halves, their counts, and two images
+    if (machine_memory_bytes() == 0 || static_cast<double>(machine_memory_bytes()) > kLargest_bytes) GTEST_SKIP() << "this machine could render the largest picture";
+    options_.overrides.width = options_.overrides.height = 65536;
+    const auto refusal = [](const auto& task) {
+        try {
+            task();
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing was thrown");
+    };
+    const std::string expected = "tiny.yaml: error: image.size is [65536, 65536]: a frame takes about 309.2 GB of memory, and this machine has ";
+    EXPECT_THAT(refusal([&] { check_shot(options_.shot, options_.overrides); }), HasSubstr(expected));
+    EXPECT_THAT(refusal([&] { render_shot(options_, events_); }), HasSubstr(expected));
+    options_.overrides.set = {{"output.aovs", "[ depth ]"}};
+    EXPECT_THAT(refusal([&] { check_shot(options_.shot, options_.overrides); }), AllOf(HasSubstr("515.4 GB"), HasSubstr("expected a smaller picture, or fewer output.aovs")));
 }
 
 }  // namespace

@@ -601,7 +601,7 @@ camera: { vertical_fov: 40 mm, sensor: { fit: fill } })"),
          R"(shot.yaml:3:25: error: camera.vertical_fov is 40 mm
     camera: { vertical_fov: 40 mm, sensor: { fit: fill } }
                             ^~~~~
-  expected 0.01 to 179 deg; 'mm' is not one of its units (deg, rad)
+  expected 1e-06 to 179.9 deg; 'mm' is not one of its units (deg, rad)
 shot.yaml:3:47: error: camera.sensor.fit is 'fill'
     camera: { vertical_fov: 40 mm, sensor: { fit: fill } }
                                                   ^~~~

@@ -246,6 +246,12 @@ TEST_F(ReelTest, LaysTheEntrysValuesAndTheCommandLineOverTheShots) {
     EXPECT_EQ(reel.entries[1].shot.view.exposure_stops, 1);
 }
 
+TEST_F(ReelTest, NamesSettingsOfTheCommandLineAsTheyWereTyped) {
+    ShotOverrides overrides;
+    overrides.set = {{"reel.fps", "0"}};
+    EXPECT_EQ(errors_of_reel("kadr-reel: 1\nshots: [ one.yaml ]\n", overrides), "--set reel.fps=0: error: fps is 0\n  expected frames a second, such as 24, 23.976 or 24000/1001");
+}
+
 TEST_F(ReelTest, ReadsItsSound) {
     const Reel reel = parse("kadr-reel: 1\nshots: [ one.yaml ]\nsound: { file: sound.wav, start: 1 s, offset: 12 f, "
                             "gain: -6 dB, fade_in: 100 ms, fade_out: 2 s, loop: true }\n");

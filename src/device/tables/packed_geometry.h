@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "frame/render_origin.h"
+#include "frame/render_space.h"
 #include "kernels/scene/scene_types.h"
 #include "scene/scene.h"
 
