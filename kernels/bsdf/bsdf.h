@@ -84,16 +84,23 @@ SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o
     Bsdf<F> b;
     b.alpha = ggx_alpha(roughness);
     b.diffuse = base_color * ((one - metallic) * (one - dielectric));
-    // glTF mixes a dielectric and a metal; Schlick's term is linear in f0, so one lobe serves both, scaled to the
-    // mixture of their albedos.
-    b.f0 = lerp(Vec3<F>{f0, f0, f0}, base_color, metallic);
-    const Vec3<F> metal{compensated_albedo(base_color.x, white, schlick, missing),
-                        compensated_albedo(base_color.y, white, schlick, missing),
-                        compensated_albedo(base_color.z, white, schlick, missing)};
-    const Vec3<F> specular = lerp(Vec3<F>{dielectric, dielectric, dielectric}, metal, metallic);
-    b.specular_scale = {specular.x / max(single_albedo(b.f0.x, white, schlick), tiny),
-                        specular.y / max(single_albedo(b.f0.y, white, schlick), tiny),
-                        specular.z / max(single_albedo(b.f0.z, white, schlick), tiny)};
+    Vec3<F> specular{dielectric, dielectric, dielectric};
+    b.f0 = {f0, f0, f0};
+    if (any(metallic > F(0.0f))) {
+        // glTF mixes a dielectric and a metal; Schlick's term is linear in f0, so one lobe serves both, scaled to the
+        // mixture of their albedos.
+        b.f0 = lerp(b.f0, base_color, metallic);
+        const Vec3<F> metal{compensated_albedo(base_color.x, white, schlick, missing),
+                            compensated_albedo(base_color.y, white, schlick, missing),
+                            compensated_albedo(base_color.z, white, schlick, missing)};
+        specular = lerp(specular, metal, metallic);
+        b.specular_scale = {specular.x / max(single_albedo(b.f0.x, white, schlick), tiny),
+                            specular.y / max(single_albedo(b.f0.y, white, schlick), tiny),
+                            specular.z / max(single_albedo(b.f0.z, white, schlick), tiny)};
+    } else {  // the same to the last bit
+        const F scale = dielectric / max(single_albedo(f0, white, schlick), tiny);
+        b.specular_scale = {scale, scale, scale};
+    }
     const F s = luminance(specular);
     const F d = luminance(b.diffuse);
     // Neither lobe below 5 %: a lobe that lights shine into must not be met once in a thousand samples.

@@ -28,7 +28,8 @@ SHARED_FN CameraSample<F> start_path(const SceneFor<F>& scene, const FilterTable
     start.weight = start.light = F(1.0f);
     if (!centred) {
         sample_filter(filter, sampler.get_2d(UInt<F>(dimension::kFilter)), offset, start.weight);
-        lens = sampler.get_2d(UInt<F>(dimension::kLens));
+        const bool pinhole = scene.camera.key_count == 1 && !(scene.camera.keys->lens_radius > 0);
+        if (!pinhole) lens = sampler.get_2d(UInt<F>(dimension::kLens));
         u_time = sampler.get_1d(UInt<F>(dimension::kTime));
     }
     const int width = scene.settings.width, height = scene.settings.height;

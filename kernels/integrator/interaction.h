@@ -143,21 +143,24 @@ SHARED_FN Vec4<T> tangent_at(const Geometry& g, const VertexKeys<T>& keys, unsig
 }
 
 /// Attributes that not every mesh has, of one lane.
-template <class F>
+template <class F, unsigned R>
 SHARED_FN void fetch_maps(const Material& m, const Geometry& g, const VertexKeys<Real<F>>& keys, const unsigned* index,
                           Real<F> u, Real<F> v, int i, SurfaceMaps<F>& maps, Interaction<F>& it) {
     const unsigned a = index[0], b = index[1], c = index[2];
-    set_vec(maps.uv[1], i, uv_at(g, index, 1, u, v));
-    Vec4<Real<F>> tangent{0, 0, 0, 1}, color{1, 1, 1, 1};
+    Vec4<Real<F>> tangent{0, 0, 0, 1};
     if (g.tangents) {
         const Vec4<Real<F>> first = tangent_at(g, keys, a);
         tangent = mix(first, tangent_at(g, keys, b), tangent_at(g, keys, c), u, v);
         tangent.w = first.w;
     }
-    if (g.colors) color = mix(g.colors[a], g.colors[b], g.colors[c], u, v);
     set_vec(maps.tangent, i, tangent);
-    set_vec(maps.color, i, color);
-    set_lane(it.unlit, i, m.unlit);
+    if constexpr ((R & requirement::kSpecials) != 0) {
+        Vec4<Real<F>> color{1, 1, 1, 1};
+        if (g.colors) color = mix(g.colors[a], g.colors[b], g.colors[c], u, v);
+        set_vec(maps.color, i, color);
+        set_vec(maps.uv[1], i, uv_at(g, index, 1, u, v));
+        set_lane(it.unlit, i, m.unlit);
+    }
 }
 
 /// The shading normal, bent as little as keeps the mirror direction above the surface.
@@ -173,6 +176,64 @@ SHARED_FN Vec3<F> reflecting_normal(Vec3<F> geometric, Vec3<F> shading, Vec3<F> 
     const F least = min(F(0.02f), dot(geometric, wo) * F(0.9f));
     const Vec3<F> bent = normalize(normalize(mirrored + geometric * (least - height)) + wo);
     return select(height < least, bent, shading);
+}
+
+/// Textures, lane by lane: base colour, metallic-roughness, emission and the normal map.
+template <class F, unsigned R>
+SHARED_FN void apply_maps(const SceneFor<F>& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side,
+                          Mask<F> active, Interaction<F>& it) {
+    using T = Real<F>;
+    constexpr bool kSpecials = (R & requirement::kSpecials) != 0;
+    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
+        const int i = lowest_bit(todo);
+        const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
+        const Vec2<T> uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)};
+        Vec2<T> uv1 = uv0;
+        Vec3<T> base = splat<T>(m.base_color);
+        T alpha = m.alpha;
+        if constexpr (kSpecials) {
+            uv1 = {lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
+            base = base * Vec3<T>{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i)};
+            alpha *= lane(maps.color.w, i);
+        }
+        if (m.base_color_texture.texture >= 0) {
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.base_color_texture.texture,
+                                                apply_transform(m.base_color_texture, uv0, uv1), true);
+            base = base * Vec3<T>{t.x, t.y, t.z};
+            alpha *= t.w;
+        }
+        set_vec(it.base_color, i, base);
+        if constexpr (kSpecials) set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : T(1.0f));
+        if (m.metallic_roughness_texture.texture >= 0) {
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.metallic_roughness_texture.texture,
+                                                apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
+            set_lane(it.roughness, i, m.roughness * t.y);
+            set_lane(it.metallic, i, m.metallic * t.z);
+        }
+        if (m.emissive_texture.texture >= 0) {
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.emissive_texture.texture,
+                                                apply_transform(m.emissive_texture, uv0, uv1), true);
+            set_vec(it.emission, i, splat<T>(m.emission) * Vec3<T>{t.x, t.y, t.z});
+        }
+        if (kSpecials && m.unlit) set_vec(it.emission, i, base);
+        const Vec3<T> tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
+        if (m.normal_texture.texture >= 0 && dot(tangent, tangent) > 0) {
+            const Vec4<T> t = sample_texture<T>(scene.textures, m.normal_texture.texture,
+                                                apply_transform(m.normal_texture, uv0, uv1), true);
+            const Vec3<T> local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
+            // The tangent frame belongs to the front side; seen from behind, its normal points the other way.
+            const T s = lane(side, i);
+            const Vec3<T> n =
+                Vec3<T>{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
+            const Vec3<T> flat = tangent - n * dot(tangent, n);
+            if (dot(flat, flat) > 1e-20f) {
+                const Vec3<T> tu = normalize(flat);
+                const Vec3<T> tv = cross(n * s, tu) * lane(maps.tangent.w, i);
+                const Vec3<T> bent = tu * local.x * s + tv * local.y * s + n * local.z;
+                if (dot(bent, bent) > 1e-20f) set_vec(it.shading_normal, i, normalize(bent));
+            }
+        }
+    }
 }
 
 /// Fetches lane by lane (every lane has its own mesh), then computes in all lanes at once.
@@ -217,8 +278,8 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
             set_lane(rotation_error, i, motion.kind == InstanceMotion::Kind::keys ? kSlerpError : 0.0f);
         }
         if constexpr (kMaps)
-            fetch_maps(scene.materials[instance.material], g, keys, index, lane(hit.u, from), lane(hit.v, from), i,
-                       maps, it);
+            fetch_maps<F, R>(scene.materials[instance.material], g, keys, index, lane(hit.u, from), lane(hit.v, from),
+                             i, maps, it);
     }
     F corner[3][8], material[8];
     for (int c = 0; c < 3; ++c) load_rows(rows[c], corner[c]);
@@ -274,7 +335,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
             const Vec3<F> t = world_from_object.vector({maps.tangent.x, maps.tangent.y, maps.tangent.z});
             maps.tangent = {t.x, t.y, t.z, maps.tangent.w * world_from_object.handedness()};
         }
-        apply_maps(scene, hit, maps, side, active, it);
+        apply_maps<F, R>(scene, hit, maps, side, active, it);
     }
     // A shading normal that points away from the viewer cannot be shaded: bend it to just inside the visible side.
     const F facing = dot(it.shading_normal, wo);
@@ -282,58 +343,6 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
     it.shading_normal =
         select(facing < kLeast, normalize(it.shading_normal + wo * (kLeast - facing)), it.shading_normal);
     return it;
-}
-
-/// Textures, lane by lane: base colour, metallic-roughness, emission and the normal map.
-template <class F>
-SHARED_FN void apply_maps(const SceneFor<F>& scene, const Hit<F>& hit, const SurfaceMaps<F>& maps, F side,
-                          Mask<F> active, Interaction<F>& it) {
-    using T = Real<F>;
-    for (unsigned todo = bits(active); todo; todo &= todo - 1) {
-        const int i = lowest_bit(todo);
-        const Material& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
-        const Vec2<T> uv0{lane(maps.uv[0].x, i), lane(maps.uv[0].y, i)},
-            uv1{lane(maps.uv[1].x, i), lane(maps.uv[1].y, i)};
-        Vec3<T> base = splat<T>(m.base_color) * Vec3<T>{lane(maps.color.x, i), lane(maps.color.y, i), lane(maps.color.z, i)};
-        T alpha = m.alpha * lane(maps.color.w, i);
-        if (m.base_color_texture.texture >= 0) {
-            const Vec4<T> t = sample_texture<T>(scene.textures, m.base_color_texture.texture,
-                                                apply_transform(m.base_color_texture, uv0, uv1), true);
-            base = base * Vec3<T>{t.x, t.y, t.z};
-            alpha *= t.w;
-        }
-        set_vec(it.base_color, i, base);
-        set_lane(it.alpha, i, m.alpha_mode == AlphaMode::blend ? saturate(alpha) : T(1.0f));
-        if (m.metallic_roughness_texture.texture >= 0) {
-            const Vec4<T> t = sample_texture<T>(scene.textures, m.metallic_roughness_texture.texture,
-                                                apply_transform(m.metallic_roughness_texture, uv0, uv1), true);
-            set_lane(it.roughness, i, m.roughness * t.y);
-            set_lane(it.metallic, i, m.metallic * t.z);
-        }
-        if (m.emissive_texture.texture >= 0) {
-            const Vec4<T> t = sample_texture<T>(scene.textures, m.emissive_texture.texture,
-                                                apply_transform(m.emissive_texture, uv0, uv1), true);
-            set_vec(it.emission, i, splat<T>(m.emission) * Vec3<T>{t.x, t.y, t.z});
-        }
-        if (m.unlit) set_vec(it.emission, i, base);
-        const Vec3<T> tangent{lane(maps.tangent.x, i), lane(maps.tangent.y, i), lane(maps.tangent.z, i)};
-        if (m.normal_texture.texture >= 0 && dot(tangent, tangent) > 0) {
-            const Vec4<T> t = sample_texture<T>(scene.textures, m.normal_texture.texture,
-                                                apply_transform(m.normal_texture, uv0, uv1), true);
-            const Vec3<T> local{(t.x * 2 - 1) * m.normal_scale, (t.y * 2 - 1) * m.normal_scale, t.z * 2 - 1};
-            // The tangent frame belongs to the front side; seen from behind, its normal points the other way.
-            const T s = lane(side, i);
-            const Vec3<T> n =
-                Vec3<T>{lane(it.shading_normal.x, i), lane(it.shading_normal.y, i), lane(it.shading_normal.z, i)};
-            const Vec3<T> flat = tangent - n * dot(tangent, n);
-            if (dot(flat, flat) > 1e-20f) {
-                const Vec3<T> tu = normalize(flat);
-                const Vec3<T> tv = cross(n * s, tu) * lane(maps.tangent.w, i);
-                const Vec3<T> bent = tu * local.x * s + tv * local.y * s + n * local.z;
-                if (dot(bent, bent) > 1e-20f) set_vec(it.shading_normal, i, normalize(bent));
-            }
-        }
-    }
 }
 
 }  // namespace kadr::kernels

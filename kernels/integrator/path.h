@@ -362,8 +362,12 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
     const Vec3<F> wo = -path.direction;
     Interaction<F> it = make_interaction<F, R>(scene, hit, path.time, wo, active);
     // By the metallic part: diffuse light is right by the tilted normal, and outweighs a dielectric's reflection.
-    const Vec3<F> reflecting = reflecting_normal(it.geometric_normal, it.shading_normal, wo);
-    it.shading_normal = normalize(it.shading_normal + (reflecting - it.shading_normal) * it.metallic);
+    const Mask<F> metal = it.metallic > F(0.0f);
+    if (any(metal)) {
+        const Vec3<F> reflecting = reflecting_normal(it.geometric_normal, it.shading_normal, wo);
+        const Vec3<F> between = normalize(it.shading_normal + (reflecting - it.shading_normal) * it.metallic);
+        it.shading_normal = select(metal, between, it.shading_normal);
+    }
     VertexResult<F> result;
 
     F emission_weight(1.0f);
@@ -371,7 +375,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
     const UInt<F> total = path.bounces & UInt<F>(0xffu);
     result.emitted = select(
         active, clamp_contribution(settings, total < UInt<F>(2u), it.emission * path.beta * emission_weight), zero);
-    if constexpr ((R & requirement::kMaps) != 0) active = active & !it.unlit;
+    if constexpr ((R & requirement::kSpecials) != 0) active = active & !it.unlit;
 
     const Frame<F> frame(it.shading_normal);
     const Vec3<F> wo_local = frame.to_local(wo);

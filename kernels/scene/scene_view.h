@@ -95,12 +95,14 @@ template <class F> using SceneFor = SceneViewOf<Real<F>>;
 /// What a shot asks of the kernels beyond the plain case; they are compiled once a set, so a shot pays for what it
 /// uses.
 namespace requirement {
-inline constexpr unsigned kMaps = 1;        ///< textures, normal maps, vertex colours, unlit materials
+inline constexpr unsigned kMaps = 1;        ///< textures, normal maps
 inline constexpr unsigned kTransforms = 2;  ///< instances that are not flattened, moving ones
 inline constexpr unsigned kEmitters =
     4;  ///< lights that rays can hit: MIS with area lights, triangles, environment maps
 inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shutter is open
-inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation;
+/// Vertex colours, a second set of texture coordinates, partial coverage, unlit materials; never without kMaps.
+inline constexpr unsigned kSpecials = 16;
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials;
 }  // namespace requirement
 
 }  // namespace kadr::kernels

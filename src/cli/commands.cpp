@@ -237,8 +237,16 @@ int run_measure(const Invocation& invocation) {
     return kDone;
 }
 
+constexpr const char* kStressHead = "       cell                               image error, 1/255: mean, largest, pixels beyond 1   holes, wrong surfaces, false shadows, leaks; hit error px, ulp\n";
+
+std::string stress_json(const stress::CellResult& result) {
+    nlohmann::ordered_json json{{"event", "cell"}};
+    json.update(nlohmann::ordered_json::parse(stress::json_of(result)));
+    return json_line(json);
+}
+
 std::string stress_line(const stress::CellResult& r) {
-    const std::string cell = fmt::format("{} {:<34}", r.sound() ? "ok    " : "FAILED", stress::name_of(r.cell));
+    const std::string cell = fmt::format("{} {:<34}", r.sound() ? "ok    " : r.fault() ? "FAILED" : "beyond", stress::name_of(r.cell));
     if (!r.refused.empty()) return fmt::format("{} refused: {}\n", cell, r.refused);
     std::string line = cell;
     if (r.picture) line += fmt::format(" {:>8.3f} {:>8.1f} {:>7.2f}%", 255 * r.picture->mean, 255 * r.picture->largest, 100 * r.picture->beyond);
@@ -262,13 +270,14 @@ void print_stress_summary(const Invocation& invocation, const std::vector<stress
 }
 
 int run_stress(const Invocation& invocation) {
+    if (!invocation.json) print(kStressHead);
     const auto results = stress::run_sweep(invocation.stress, [&](const stress::CellResult& result, std::size_t, std::size_t) {
-        print(stress_line(result));
+        print(invocation.json ? stress_json(result) : stress_line(result));
         std::fflush(stdout);
     });
     const std::filesystem::path page = stress::write_report(results, invocation.stress.output);
     print_stress_summary(invocation, results, page);
-    return std::all_of(results.begin(), results.end(), [](const stress::CellResult& r) { return r.sound(); }) ? kDone : kFailed;
+    return std::none_of(results.begin(), results.end(), [](const stress::CellResult& r) { return r.fault(); }) ? kDone : kFailed;
 }
 
 int run_info(const Invocation& invocation) {

@@ -14,10 +14,12 @@ struct RequirementName {
 };
 
 inline constexpr RequirementName kRequirementNames[] = {
-    {kernels::requirement::kMaps, "maps", "textures, vertex colours, unlit or partly covering materials"},
+    {kernels::requirement::kMaps, "maps", "textures and normal maps"},
     {kernels::requirement::kTransforms, "transforms", "meshes that move, or whose copies are not flattened"},
     {kernels::requirement::kEmitters, "emitters", "lights that rays can meet: areas, spheres, wide suns, glowing meshes, an image of the sky"},
     {kernels::requirement::kDeformation, "deformation", "meshes that bend while the shutter is open"},
+    {kernels::requirement::kSpecials, "specials",
+     "vertex colours, a second set of texture coordinates, partial coverage, unlit materials"},
 };
 
 /// "maps emitters"; "nothing" for an empty set.

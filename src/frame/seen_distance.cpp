@@ -45,7 +45,9 @@ double seen_distance(const BoundShot& shot, const CameraState& camera, double ti
     const double hint = camera.subject_distance;
     if (shot.bindings().camera_node < 0) return hint;
     const double seen = nearest_seen(shot, camera, time_s);
-    return std::isfinite(seen) && seen > 0 && (seen < hint / 8 || seen > 1024 * hint) ? seen : hint;
+    // Where the view is narrow, the place of what it shows has to be known to a few of its heights.
+    const bool narrow = !camera.orthographic && camera.tan_half_height < 0.01;
+    return std::isfinite(seen) && seen > 0 && (narrow || seen < hint / 8 || seen > 1024 * hint) ? seen : hint;
 }
 
 }  // namespace kadr

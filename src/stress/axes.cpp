@@ -84,6 +84,11 @@ std::string name_of(const Cell& cell) {
     return cell.second ? first + "_" + name_of(*cell.second, cell.second_value) : first;
 }
 
+bool is_safe(const Cell& cell) {
+    const auto within = [](const Axis& axis, double value) { return value >= axis.safe_low && value <= axis.safe_high; };
+    return within(*cell.axis, cell.value) && (!cell.second || within(*cell.second, cell.second_value));
+}
+
 std::string_view refusal_of(const Cell& cell) {
     const std::string_view first = refusal_of(cell.axis, cell.value);
     return first.empty() ? refusal_of(cell.second, cell.second_value) : first;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,8 @@ struct Axis {
     bool same_picture = false;           ///< the picture is the same for every value, but for the noise of its samples
     std::string_view limit = {};            ///< what the files themselves lose, which no renderer can mend; empty: nothing
     std::vector<Refusal> refusals = {};     ///< of values that Kadr does not take
+    /// What is stated to be safe: a cell in here that is not sound is a fault. Found by the sweep (`kadr stress`).
+    double safe_low = -std::numeric_limits<double>::infinity(), safe_high = std::numeric_limits<double>::infinity();
     void (*apply)(Stage& stage, double value) = nullptr;
 };
 
@@ -40,6 +43,9 @@ struct Cell {
     const Axis* second = nullptr;        ///< may be null
     double second_value = 0;             ///< unused without `second`
 };
+
+/// Whether all its values are stated to be safe.
+bool is_safe(const Cell& cell);
 
 /// "distance_10000", "distance_10000_spin_1000": part of file names.
 std::string name_of(const Cell& cell);

@@ -31,6 +31,8 @@ struct CellResult {
 
     /// Nothing wrong: the picture within a step of eight bits, no ray that contradicts the reference, no sample lost.
     bool sound() const;
+    /// Not sound although its values are stated to be safe.
+    bool fault() const { return !sound() && is_safe(cell); }
 };
 
 struct EvaluateOptions {

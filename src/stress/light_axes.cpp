@@ -79,7 +79,7 @@ std::vector<Axis> light_axes() {
         {.name = "area_side", .unit = "m", .meaning = "of a square lamp that hangs over the scene",
          .values = {1e-9, 1e-6, 1e-3, 1, 10, 1e3, 1e6}, .quick = {1e-9, 1, 1e6}, .ordinary = 1, .apply = set_area_side},
         {.name = "intensity", .unit = "", .meaning = "factor on everything that shines; the exposure takes it back",
-         .values = {1e-30, 1e-20, 1e-10, 1e-5, 1, 1e5, 1e10, 1e20, 1e30}, .quick = {1e-30, 1e-5, 1, 1e5, 1e30}, .ordinary = 1, .same_picture = true, .apply = set_intensity},
+         .values = {1e-30, 1e-20, 1e-10, 1e-5, 1, 1e5, 1e10, 1e20, 1e30}, .quick = {1e-30, 1e-5, 1, 1e5, 1e30}, .ordinary = 1, .same_picture = true, .safe_low = 1e-20, .apply = set_intensity},
     };
 }
 

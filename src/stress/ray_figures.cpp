@@ -87,12 +87,8 @@ private:
         if (seen.instance == truth[0].instance) note_position(seen, truth[0]);
     }
 
-    /// Surfaces in one place: which of them is in front, not even the file says.
-    static bool same_place(const SurfaceHit& a, const SurfaceHit& b) {
-        constexpr double kRounding = 8 * 0x1p-23;
-        const glm::dvec3 p = glm::abs(to_glm(b.position));
-        return glm::length(to_glm(a.position) - to_glm(b.position)) <= kRounding * std::max({p.x, p.y, p.z});
-    }
+    /// Surfaces in one place, as far as floats tell distances apart: which of them is in front, not even the file says.
+    static bool same_place(const SurfaceHit& a, const SurfaceHit& b) { return std::abs(a.distance_m - b.distance_m) <= 8 * 0x1p-23 * b.distance_m; }
 
     /// Across the ray: along it, nothing moves in the picture.
     void note_position(const SurfaceHit& seen, const SurfaceHit& truth) {

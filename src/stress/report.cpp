@@ -65,7 +65,7 @@ std::string html_cell(const Column& column, const CellResult& result) {
 }
 
 std::string html_row(const CellResult& result) {
-    std::string row = fmt::format("<tr><th class=\"{}\">{}</th>", result.sound() ? "ok" : "bad", escaped(name_of(result.cell)));
+    std::string row = fmt::format("<tr><th class=\"{}\">{}</th>", result.sound() ? "ok" : result.fault() ? "bad" : "beyond", escaped(name_of(result.cell)));
     if (!result.refused.empty())
         row += fmt::format("<td class=\"note\" colspan=\"{}\">{}{}</td>", columns().size(), result.refusal_expected ? "refused: " : "refused, which the sweep did not expect: ", escaped(result.refused));
     else
@@ -95,7 +95,7 @@ std::string html_page(const std::vector<CellResult>& results) {
     std::string page = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>kadr stress</title><style>\n"
                        "body{font:14px system-ui,sans-serif;margin:2em;color:#222}table{border-collapse:collapse;margin:1em 0}\n"
                        "th,td{padding:2px 8px;text-align:right;border:1px solid #ddd}th:first-child,td.note{text-align:left}\n"
-                       "th.ok{background:#e2f3e2}th.bad{background:#f6d5d5}td.note{max-width:46em;color:#555}\n"
+                       "th.ok{background:#e2f3e2}th.bad{background:#f2a9a9}th.beyond{background:#f6e7c8}td.note{max-width:46em;color:#555}\n"
                        "</style></head><body><h1>kadr stress</h1>\n";
     page += fmt::format("<p>{} cells, {} not sound. {} camera rays and {} shadow rays against the reference in double: {} holes, {} wrong surfaces, {} false shadows, {} leaks. "
                         "A cell is sound where its picture is within a step of eight bits of the reference on average, no ray contradicts it and no sample is lost.</p>\n",
@@ -105,10 +105,11 @@ std::string html_page(const std::vector<CellResult>& results) {
     return page + "</table></body></html>\n";
 }
 
-nlohmann::ordered_json json_of(const CellResult& result) {
+nlohmann::ordered_json object_of(const CellResult& result) {
     nlohmann::ordered_json json{{"cell", name_of(result.cell)}, {"axis", result.cell.axis->name}, {"value", result.cell.value}, {"shot", result.shot.filename().string()}};
     if (result.cell.second) json["second"] = result.cell.second->name, json["second_value"] = result.cell.second_value;
     json["sound"] = result.sound();
+    json["stated_safe"] = is_safe(result.cell);
     if (!result.refused.empty()) json["refused"] = result.refused;
     else
         for (const Column& column : columns())
@@ -174,9 +175,11 @@ RayFigures total_rays(const std::vector<CellResult>& results) {
     return sum;
 }
 
+std::string json_of(const CellResult& result) { return object_of(result).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); }
+
 std::filesystem::path write_report(const std::vector<CellResult>& results, const std::filesystem::path& folder) {
     nlohmann::ordered_json cells = nlohmann::ordered_json::array();
-    for (const CellResult& result : results) cells.push_back(json_of(result));
+    for (const CellResult& result : results) cells.push_back(object_of(result));
     write_file(folder / "report.json", cells.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     write_file(folder / "report.csv", csv_of(results));
     write_file(folder / "report.html", html_page(results));

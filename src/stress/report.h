@@ -23,6 +23,9 @@ std::vector<SafeRange> safe_ranges(const std::vector<CellResult>& results);
 /// All rays and samples of a sweep.
 RayFigures total_rays(const std::vector<CellResult>& results);
 
+/// What is known of a cell, as a JSON object.
+std::string json_of(const CellResult& result);
+
 /// Writes FOLDER/report.html (one page, self-contained, with a heat map), report.csv and report.json.
 /// @return the page  @throws RenderError
 std::filesystem::path write_report(const std::vector<CellResult>& results, const std::filesystem::path& folder);

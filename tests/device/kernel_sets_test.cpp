@@ -32,6 +32,14 @@ unsigned expect_same(SmallScene& s, int width, const std::string& name) {
     return needed.statistics.compiled;
 }
 
+std::set<unsigned> compiled_sets(IntegratorKind integrator) {
+    using namespace kernel_sets;
+    if (integrator == IntegratorKind::direct) return {kDirect.begin(), kDirect.end()};
+    std::set<unsigned> sets(kPlainPath.begin(), kPlainPath.end());
+    sets.insert(kMapsPath.begin(), kMapsPath.end());
+    return sets;
+}
+
 class KernelSets : public testing::TestWithParam<std::tuple<IntegratorKind, int>> {
 protected:
     void SetUp() override {
@@ -56,26 +64,29 @@ TEST_P(KernelSets, LeaveTheSamePixelsInScenesOfRandomFeatures) {
         RandomScene random(seed, integrator());
         used.insert(expect_same(random.scene, width(), "seed " + std::to_string(seed) + ": " + random.description()));
     }
-    std::set<unsigned> compiled;
-    if (integrator() == IntegratorKind::path)
-        compiled.insert(kernel_sets::kPath.begin(), kernel_sets::kPath.end());
-    else
-        compiled.insert(kernel_sets::kDirect.begin(), kernel_sets::kDirect.end());
-    EXPECT_EQ(used, compiled) << "a kernel was compared with itself alone, or not at all";
+    EXPECT_EQ(used, compiled_sets(integrator())) << "a kernel was compared with itself alone, or not at all";
 }
 
 INSTANTIATE_TEST_SUITE_P(BothIntegratorsAndWidths, KernelSets,
                          testing::Combine(testing::Values(IntegratorKind::path, IntegratorKind::direct), testing::Values(1, 8)));
 
-TEST(CompiledSet, IsTheFirstThatHoldsWhatIsNeeded) {
+TEST(CompiledSet, HoldsWhatIsNeededAndAsLittleMoreAsThereIs) {
     using namespace kernels::requirement;
     for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::direct})
-        for (unsigned needs = 0; needs <= kAll; ++needs) {
-            const unsigned held = integrator == IntegratorKind::direct ? needs & ~kEmitters : needs;
-            EXPECT_EQ(compiled_set(integrator, needs) & held, held) << needs;
+        for (unsigned all_bits = 0; all_bits <= kAll; ++all_bits) {
+            const unsigned needs = integrator == IntegratorKind::direct ? all_bits & ~kEmitters : all_bits;
+            const unsigned taken = compiled_set(integrator, all_bits);
+            EXPECT_EQ(taken & needs, needs) << needs;
+            for (const unsigned other : compiled_sets(integrator))
+                EXPECT_FALSE((other & needs) == needs && other != taken && (other & ~taken) == 0) << needs << ": " << other << " instead of " << taken;
         }
-    EXPECT_EQ(compiled_set(IntegratorKind::path, 0), 0u);
-    EXPECT_EQ(compiled_set(IntegratorKind::direct, kEmitters), 0u) << "the analytic model meets no lights";
+}
+
+TEST(CompiledSet, IsMadeInBothWidths) {
+    for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::direct})
+        for (const unsigned set : compiled_sets(integrator))
+            for (int width = 1; width <= best_width(); width += 7)
+                EXPECT_TRUE(make_tile_driver(width, integrator, set)) << set << ", " << width << " lanes";
 }
 
 TEST(RequirementNames, NameEveryRequirementOnce) {

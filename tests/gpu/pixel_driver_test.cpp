@@ -90,17 +90,17 @@ void launch(IntegratorKind integrator, unsigned requirements, const kernels::Lau
         KADR_KERNEL(path, 0),
         KADR_KERNEL(path, kTransforms),
         KADR_KERNEL(path, kTransforms | kDeformation),
-        KADR_KERNEL(path, kMaps | kTransforms | kDeformation),
+        KADR_KERNEL(path, kMaps | kSpecials | kTransforms | kDeformation),
         KADR_KERNEL(path, kEmitters),
         KADR_KERNEL(path, kTransforms | kEmitters),
-        KADR_KERNEL(path, kMaps | kEmitters),
-        KADR_KERNEL(path, kMaps | kTransforms),
+        KADR_KERNEL(path, kMaps | kSpecials | kEmitters),
+        KADR_KERNEL(path, kMaps | kSpecials | kTransforms),
         KADR_KERNEL(direct, 0),
         KADR_KERNEL(direct, kTransforms),
         KADR_KERNEL(direct, kTransforms | kDeformation),
-        KADR_KERNEL(direct, kMaps | kTransforms | kDeformation),
-        KADR_KERNEL(direct, kMaps),
-        KADR_KERNEL(direct, kMaps | kTransforms),
+        KADR_KERNEL(direct, kMaps | kSpecials | kTransforms | kDeformation),
+        KADR_KERNEL(direct, kMaps | kSpecials),
+        KADR_KERNEL(direct, kMaps | kSpecials | kTransforms),
 #undef KADR_KERNEL
     };
     for (const auto& k : kKernels)

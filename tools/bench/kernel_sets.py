@@ -18,7 +18,6 @@ import argparse
 import json
 import os
 import pathlib
-import re
 import statistics
 import subprocess
 import sys
@@ -100,6 +99,50 @@ def speed(options):
     return report
 
 
+SHOT = """kadr: 1
+timing: {{ fps: 24, frames: 0 }}
+image: {{ size: [320, 180] }}
+scenes:
+  - {{ id: solids, gltf: "{assets}/solids.glb", transform: {{ scale: {scale} }} }}
+  - {{ id: hill, gltf: "{assets}/hill.glb", transform: {{ translate: [0, -1.5, 0] }}, visible: {hill} }}
+  - {{ id: robot, gltf: "{assets}/robot.glb", transform: {{ translate: {robot_at} }}, visible: {robot} }}
+camera: {{ position: [0, 2, 9], look_at: [0, 0, 0], focal_length: 35 mm{lens} }}
+shutter: {{ angle: 180 deg }}
+lights:
+  - {{ type: directional, illuminance: 3 lux, direction: [-1, -2, -1] }}
+{light}
+environment: {{ color: [0.3, 0.4, 0.6] }}
+render: {{ integrator: path, samples: 16, bounces: {{ total: 4 }}, filter: {{ type: box, width: 1 px }} }}
+output: {{ frames: "{folder}/unused.png" }}
+"""
+PANEL = "  - {{ type: area, luminance: {} nt, size: [1, 1], position: [0, 4, 2], look_at: [0, 0, 0] }}"
+PLAIN = {"scale": 1, "hill": "false", "robot": "false", "robot_at": "[0, 0, 0]", "lens": "", "light": ""}
+TURNING = "{ keys: { 0 s: [0, 0, 0], 1 s: [1, 0, 0] } }"
+# A feature: what of the shot it changes, unused and in use. The plain shot loads all the same files, and hides them.
+FEATURES = {
+    "an area light": ({"light": PANEL.format(0)}, {"light": PANEL.format(20)}),
+    "a textured mesh that moves": ({"robot_at": TURNING}, {"robot": "true", "robot_at": TURNING}),
+    "textures": ({}, {"hill": "true"}),
+    "a lens": ({"lens": ", focus: 9 m"}, {"lens": ", f_stop: 2, focus: 9 m"}),
+    "motion": ({"scale": "{ keys: { 0 s: 1, 1 s: 1 } }"}, {"scale": "{ keys: { 0 s: 1, 1 s: 1.2 } }"}),
+}
+
+
+def unused(options):
+    report = {}
+    print(f"{'feature':28} {'unused':>8} {'in use':>8}   of the processor time without it")
+    for name, changes in FEATURES.items():
+        sides = []
+        for i, changed in enumerate((*changes, {})):
+            shot = options.folder / f"unused{i}.yaml"
+            shot.write_text(SHOT.format(**{**PLAIN, **changed}, assets=ROOT / "shots" / "assets", folder=options.folder))
+            sides.append(Side(options, shot, 0, "needed"))
+        without_use, in_use, _ = report[name] = compare(sides, options)
+        print(f"{name:28} {without_use['ratio']:>8.3f} {in_use['ratio']:>8.3f}   unused: {min(without_use['ratios']):.3f} to "
+              f"{max(without_use['ratios']):.3f}", flush=True)
+    return report
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mode", choices=("speed", "unused"))
@@ -112,7 +155,7 @@ def main():
     options.kadr = options.kadr.resolve()
     with tempfile.TemporaryDirectory(prefix="kadr-kernels-") as folder:
         options.folder = pathlib.Path(folder)
-        report = {"speed": speed, "unused": speed}[options.mode](options)
+        report = {"speed": speed, "unused": unused}[options.mode](options)
     if options.output:
         options.output.write_text(json.dumps({"mode": options.mode, "machine": machine(), "report": report}, indent=1) + "\n")
 

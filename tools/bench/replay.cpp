@@ -42,8 +42,7 @@ public:
         const kernels::Settings& settings = scene.view().settings;
         kernels::build_filter(settings.filter, settings.filter_radius, filter_);
         const unsigned set = compiled_set(settings.integrator, scene.requirements());
-        driver_.reset(best_width() == 8 ? make_avx2_driver(settings.integrator, set)
-                                        : make_portable_driver(settings.integrator, set));
+        driver_ = make_tile_driver(best_width(), settings.integrator, set);
     }
 
     double render(std::vector<LoggedRay>* log) {

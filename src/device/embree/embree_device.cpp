@@ -116,8 +116,7 @@ public:
                   rows = (film.height() + kTileEdge - 1) / kTileEdge;
         tbb::enumerable_thread_specific<Worker> workers([&] {
             Worker worker;
-            worker.driver.reset(width_ == 8 ? make_avx2_driver(settings.integrator, statistics_.compiled)
-                                            : make_portable_driver(settings.integrator, statistics_.compiled));
+            worker.driver = make_tile_driver(width_, settings.integrator, statistics_.compiled);
             return worker;
         });
         std::atomic<int> done{0};

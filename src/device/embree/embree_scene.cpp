@@ -258,8 +258,7 @@ void EmbreeScene::set_instance(const SceneSnapshot& snapshot, std::size_t index,
 }
 
 void EmbreeScene::set_requirements() {
-    requirements_ = 0;
-    if (materials_.shows_maps()) requirements_ |= kernels::requirement::kMaps;
+    requirements_ = materials_.requirements();
     if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
     if (deforming_.bends()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;

@@ -193,7 +193,7 @@ private:
     void trace(const PathState<F>& path, unsigned lanes, bool camera, Hit<F>& hit) {
         QueryContext context;
         context.keep_blend = kIntegrator == IntegratorKind::direct;
-        if constexpr ((R & requirement::kMaps) != 0)
+        if constexpr ((R & requirement::kSpecials) != 0)
             for (int i = 0; i < N; ++i)
                 context.key[i] = coverage_key(lane(path.sampler_key, i), lane(path.sample, i), lane(path.bounces, i));
         hit.distance = F(kInfinity);
@@ -399,7 +399,7 @@ private:
         }
         if (open == 0) return;
         F transmittance(1.0f);
-        if constexpr ((R & requirement::kMaps) != 0) {
+        if constexpr ((R & requirement::kSpecials) != 0) {
             for (int i = 0; i < N; ++i) set_lane(transmittance, i, context.transmittance[i]);
         }
         add(load<UInt<F>>(shadows_.data[kShadowSlot]), Vec3<F>{f(kShadowX), f(kShadowY), f(kShadowZ)} * transmittance,
@@ -428,28 +428,18 @@ private:
     TileCounters* counters_ = nullptr;
 };
 
-/// @param set  one of kernel_sets::kPath. @return null for another
-template <class F, std::size_t... I>
-TileDriver* make_path_driver(unsigned set, std::index_sequence<I...>) {
+/// @tparam kSets  a list of kernel_sets
+/// @param set     one of them. @return null for another
+template <class F, IntegratorKind kIntegrator, const auto& kSets, std::size_t... I>
+TileDriver* make_one_of(unsigned set, std::index_sequence<I...>) {
     TileDriver* driver = nullptr;
-    ((set == kernel_sets::kPath[I] ? void(driver = new Driver<F, kernel_sets::kPath[I], IntegratorKind::path>()) : void()), ...);
+    ((set == kSets[I] ? void(driver = new Driver<F, kSets[I], kIntegrator>()) : void()), ...);
     return driver;
 }
 
-/// @param set  one of kernel_sets::kDirect. @return null for another
-template <class F, std::size_t... I>
-TileDriver* make_direct_driver(unsigned set, std::index_sequence<I...>) {
-    TileDriver* driver = nullptr;
-    ((set == kernel_sets::kDirect[I] ? void(driver = new Driver<F, kernel_sets::kDirect[I], IntegratorKind::direct>()) : void()), ...);
-    return driver;
-}
-
-/// @param set  of compiled_set
-template <class F>
-TileDriver* make_driver(IntegratorKind integrator, unsigned set) {
-    return integrator == IntegratorKind::direct
-               ? make_direct_driver<F>(set, std::make_index_sequence<kernel_sets::kDirect.size()>())
-               : make_path_driver<F>(set, std::make_index_sequence<kernel_sets::kPath.size()>());
+template <class F, IntegratorKind kIntegrator, const auto& kSets>
+TileDriver* make_one_of(unsigned set) {
+    return make_one_of<F, kIntegrator, kSets>(set, std::make_index_sequence<kSets.size()>());
 }
 
 }  // namespace kadr::KADR_DRIVER_NAMESPACE

@@ -67,9 +67,4 @@ public:
     virtual void render(const TileJob& job, TileResult& result, TileCounters& counters) = 0;
 };
 
-/// @param set  what it is compiled for: one that compiled_set names
-TileDriver* make_portable_driver(kernels::IntegratorKind integrator, unsigned set);
-/// Eight lanes; only on processors with AVX2.
-TileDriver* make_avx2_driver(kernels::IntegratorKind integrator, unsigned set);
-
 }  // namespace kadr

@@ -226,8 +226,7 @@ void HiprtScene::set_previous(const SceneSnapshot& snapshot) {
 }
 
 void HiprtScene::set_requirements() {
-    requirements_ = 0;
-    if (materials_.shows_maps()) requirements_ |= kernels::requirement::kMaps;
+    requirements_ = materials_.requirements();
     if (!tables_.shown.empty()) requirements_ |= kernels::requirement::kTransforms;
     if (bending_.blurs()) requirements_ |= kernels::requirement::kDeformation;
     const kernels::LightSet& lights = view_.lights;

@@ -1,16 +1,20 @@
 #include "device/tables/material_table.h"
 
-#include <algorithm>
-
 namespace kadr {
 namespace {
 
 bool is_zero(const kernels::Vec3f& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-bool has_maps(const kernels::Material& m) {
-    return m.unlit || m.alpha_mode != kernels::AlphaMode::opaque || m.base_color_texture.texture >= 0 ||
-           m.metallic_roughness_texture.texture >= 0 || m.normal_texture.texture >= 0 ||
-           (m.emissive_texture.texture >= 0 && !is_zero(m.emission));
+/// The kernels::requirement bits of a material.
+unsigned requirements_of(const kernels::Material& m) {
+    using namespace kernels::requirement;
+    const bool emits = !is_zero(m.emission);  // else its texture is multiplied by nothing
+    unsigned needs = m.unlit || m.alpha_mode != kernels::AlphaMode::opaque ? kMaps | kSpecials : 0;
+    for (const kernels::TextureSlot* slot :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture})
+        if (slot->texture >= 0 && (slot != &m.emissive_texture || emits))
+            needs |= slot->uv_set == 0 ? kMaps : kMaps | kSpecials;
+    return needs;
 }
 
 bool equal(const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -43,8 +47,10 @@ void MaterialTable::note_shown(const SceneSnapshot& snapshot, std::span<const ke
         if (seen[material]) shown_.push_back(material);
 }
 
-bool MaterialTable::shows_maps() const {
-    return shows_colors_ || std::any_of(shown_.begin(), shown_.end(), [&](unsigned m) { return has_maps(data()[m]); });
+unsigned MaterialTable::requirements() const {
+    unsigned needs = shows_colors_ ? kernels::requirement::kMaps | kernels::requirement::kSpecials : 0;
+    for (const unsigned material : shown_) needs |= requirements_of(data()[material]);
+    return needs;
 }
 
 bool needs_filter(const kernels::Material& material, bool cull) {

@@ -26,8 +26,8 @@ public:
 
     const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
     std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }
-    /// Whether what is shown needs requirement::kMaps.
-    bool shows_maps() const;
+    /// What is shown needs of requirement::kMaps and kSpecials.
+    unsigned requirements() const;
 
 private:
     const Scene& scene_;
