@@ -119,7 +119,7 @@ std::vector<Axis> surface_axes() {
         {.name = "coincident", .unit = "", .meaning = "triangles in the same place",
          .values = {1, 10, 1e3, 1e5, 1e6, 1e7}, .quick = {1, 1e4}, .ordinary = 1, .same_picture = true, .apply = add_coincident},
         {.name = "thickness", .unit = "", .meaning = "of a shell around another colour, and of a plate, as a part of their size",
-         .values = {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}, .quick = {1e-9, 1e-5, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-6, .apply = set_thickness},
+         .values = {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}, .quick = {1e-9, 1e-5, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-5, .apply = set_thickness},
         {.name = "gap", .unit = "", .meaning = "between the floor and what stands on it, as a part of its size; negative: sunk into it",
          .values = {-1e-1, -1e-3, -1e-6, -1e-9, 0, 1e-9, 1e-6, 1e-4, 1e-2, 1e-1}, .quick = {-1e-3, 0, 1e-9, 1e-4, 1e-1}, .ordinary = 1e-1, .apply = set_gap},
         {.name = "nested", .unit = "", .meaning = "balls inside the ball, each a thousandth smaller, of another colour",

@@ -214,7 +214,7 @@ private:
         if (!has("previous")) return;
         PreviousPlaces previous;
         previous.camera = scene.snapshot.camera_keys[0];
-        previous.world_from_geometry.assign(scene.snapshot.instances.size(), place({0.1, 0, 0}));
+        previous.space_from_geometry.assign(scene.snapshot.instances.size(), place({0.1, 0, 0}));
         for (const auto& mesh : scene.snapshot.deformed) {
             std::vector<kernels::Vec3f>& earlier = previous.deformed.emplace_back();
             const std::size_t count = mesh->vertices.size() / mesh->key_count;
