@@ -303,6 +303,7 @@ void Parser::add_explain() {
     app->add_option("--frames", invocation_.render.overrides.frames, "frames to look at: 1-24x2,40 (default: the shot's)");
     add_overrides(app);
     app->add_option("--quality", invocation_.render.overrides.quality, "draft, preview, final or reference: `kadr describe quality`");
+    app->add_flag("--measure", invocation_.trial, "render a little of the middle frame, to say how long a frame takes");
     app->add_flag("--json", invocation_.json, "as a JSON object");
 }
 

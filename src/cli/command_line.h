@@ -30,6 +30,7 @@ struct Invocation {
     bool json_schema = false;
     bool json = false, stats = false;
     bool verbose = false;                        ///< check, devices
+    bool trial = false;                          ///< explain: render a little to say what a frame costs
     std::string text;                            ///< help or version asked for: print this and end
 };
 

@@ -79,7 +79,7 @@ int run_explain(const Invocation& invocation) {
     const RenderOptions& render = invocation.render;
     if (is_reel(render.shot))
         throw InputError(fmt::format("{} is a reel", render.shot.string()), "expected a shot: kadr explain tells of one of its shots at a time");
-    const Explanation explanation = explain_shot(render.shot, render.overrides, render.device);
+    const Explanation explanation = explain_shot({render.shot, render.overrides, render.device, invocation.trial});
     if (invocation.json) {
         print(json_line(explanation_json(explanation)));
         return kDone;

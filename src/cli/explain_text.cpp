@@ -75,6 +75,36 @@ std::string kernels_text(const Explanation& e) {
     return text;
 }
 
+double mebibytes(double bytes) { return bytes / 1048576; }
+
+std::string memory_text(const MemoryForecast& memory) {
+    std::string text = fmt::format("memory on the CPU: about {:.0f} MiB at the most, when {}\n", mebibytes(memory.total()), memory.moment);
+    for (const MemoryPart& part : memory.parts) text += fmt::format("  {:<12}  {:>10.1f} MiB  {}\n", part.name, mebibytes(part.bytes), part.of);
+    return text;
+}
+
+std::string cost_text(const Explanation& e) {
+    std::string text = fmt::format("cost of a frame: at most {:.4g} million samples\n", 1e-6 * static_cast<double>(e.pixel_samples));
+    if (!e.cost) return text + "  its time was not measured: kadr explain --measure renders a little\n";
+    const FrameCost& cost = *e.cost;
+    return text + fmt::format("  at most {:.3g} s to trace, and {:.3g} s to set up the first: by frame {} at {} x {} with {} samples a pixel, {:.3g} million samples a second of {:.1f} rays each\n",
+                              cost.trace_s, cost.load_s, cost.frame, cost.width, cost.height, cost.samples, 1e-6 * cost.pixel_samples_per_s, cost.rays_per_sample);
+}
+
+Json json_of_cost(const Explanation& e) {
+    Json json{{"pixel_samples", e.pixel_samples}};
+    if (e.cost)
+        json["measured"] = {{"frame", e.cost->frame}, {"width", e.cost->width}, {"height", e.cost->height}, {"samples", e.cost->samples}, {"load_s", e.cost->load_s},
+                            {"pixel_samples_per_s", e.cost->pixel_samples_per_s}, {"rays_per_sample", e.cost->rays_per_sample}, {"trace_s", e.cost->trace_s}};
+    return json;
+}
+
+Json json_of(const MemoryForecast& memory) {
+    Json parts = Json::array();
+    for (const MemoryPart& part : memory.parts) parts.push_back({{"name", part.name}, {"bytes", static_cast<std::uint64_t>(part.bytes)}, {"of", part.of}});
+    return {{"bytes", static_cast<std::uint64_t>(memory.total())}, {"when", memory.moment}, {"parts", parts}};
+}
+
 Json json_of(const std::vector<KernelUse>& kernels) {
     Json list = Json::array();
     for (const KernelUse& use : kernels) list.push_back({{"name", use.name}, {"frames", use.frames}});
@@ -105,7 +135,7 @@ Json json_of(const std::vector<FileExtensions>& files) {
 }  // namespace
 
 std::string explanation_text(const Explanation& e) {
-    return size_line(e) + needs_text(e.needs) + left_out_text(e.left_out) + extensions_text(e.extensions) + kernels_text(e);
+    return size_line(e) + needs_text(e.needs) + left_out_text(e.left_out) + extensions_text(e.extensions) + kernels_text(e) + memory_text(e.memory) + cost_text(e);
 }
 
 Json explanation_json(const Explanation& e) {
@@ -120,6 +150,8 @@ Json explanation_json(const Explanation& e) {
             {"device", {{"name", e.device}, {"why", e.device_why}}},
             {"integrator", e.integrator},
             {"kernels", json_of(e.kernels)},
+            {"memory", json_of(e.memory)},
+            {"cost", json_of_cost(e)},
             {"warnings", warnings}};
 }
 

@@ -24,6 +24,11 @@ struct ValueDifference {
     int x = 0, y = 0, channel = 0; ///< where the largest is
 };
 
+/// Columns, rows and channels of an image file.
+struct ImageExtent {
+    int width = 0, height = 0, channels = 0;
+};
+
 /// The image library behind an interface: OpenImageIO lives in a module of its own that is opened in the background
 /// (linking it the plain way costs 0.3 s at every start).
 class ImageIo {
@@ -46,6 +51,9 @@ public:
     /// Values as stored (sRGB-encoded for PNG and JPEG), alpha premultiplied; beauty channels first.
     /// @throws InputError  when there is no such file, it is not an image, or it is incomplete
     virtual Image read(const std::filesystem::path& path) const = 0;
+
+    /// From the file's header. @throws InputError  when there is no such file or it is not an image
+    virtual ImageExtent extent(const std::filesystem::path& path) const = 0;
 
     /// Empty for an image that Kadr did not write. @throws InputError  when there is no such file or it is not an image
     virtual Metadata read_metadata(const std::filesystem::path& path) const = 0;

@@ -212,6 +212,11 @@ public:
         return image;
     }
 
+    ImageExtent extent(const fs::path& path) const override {
+        const OIIO::ImageSpec spec = open_image(path)->spec();
+        return {spec.width, spec.height, spec.nchannels};
+    }
+
     Metadata read_metadata(const fs::path& path) const override {
         const Input input = open_image(path);
         Metadata metadata;

@@ -1,10 +1,13 @@
 #include "render/explain.h"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "device/embree/frame_facts.h"
+#include "output/image_io.h"
 #include "render/loaded_shot.h"
+#include "render/render_job.h"
 
 namespace kadr {
 namespace {
@@ -27,11 +30,15 @@ void add_kernels(const LoadedShot& loaded, const std::vector<SceneSnapshot>& par
 
 }  // namespace
 
-Explanation explain_shot(const std::filesystem::path& path, const ShotOverrides& overrides, const DeviceRequest& device) {
-    const DeviceChoice choice = make_device(device);
-    LoadOptions headers;
-    headers.decode_textures = false;
-    const LoadedShot loaded(parse_shot(path, overrides), headers);
+Explanation explain_shot(const ExplainOptions& options) {
+    const DeviceChoice choice = make_device(options.device);
+    image_io();
+    RenderExtent extent;
+    extent.program_bytes = static_cast<double>(current_memory_bytes());
+    extent.threads = options.device.threads > 0 ? options.device.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    LoadOptions reading;
+    reading.decode_textures = options.measure;
+    const LoadedShot loaded(parse_shot(options.shot, options.overrides), reading);
     const Shot& shot = loaded.shot();
     const std::vector<int>& frames = loaded.bound().timing().frames;
     Explanation explanation;
@@ -46,10 +53,14 @@ Explanation explain_shot(const std::filesystem::path& path, const ShotOverrides&
     explanation.needs = requirements_of(loaded.bound());
     explanation.left_out = loaded.left_out();
     for (const SceneFile& file : loaded.scene().files) explanation.extensions.push_back({file.id, file.extensions, file.ignored_extensions});
+    extent.frames = explanation.frames;
     for (const int frame : telling_frames(frames)) {
         const std::vector<SceneSnapshot> parts = make_snapshots(loaded.bound(), loaded.bound().sequence().frame(frame));
         add_kernels(loaded, parts, frame, explanation.kernels);
+        MemoryForecast memory = forecast_memory(loaded, parts, extent);
+        if (memory.total() > explanation.memory.total()) explanation.memory = std::move(memory);
     }
+    if (options.measure) explanation.cost = measure_frame_cost(loaded, *choice.device, frames[(frames.size() - 1) / 2]);
     explanation.warnings = loaded.warnings();
     return explanation;
 }

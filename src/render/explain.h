@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "device/device.h"
 #include "frame/shot_needs.h"
+#include "render/frame_cost.h"
+#include "render/memory_forecast.h"
 #include "render/requirements.h"
 #include "shot/shot_parser.h"
 
@@ -25,7 +28,8 @@ struct KernelUse {
     std::vector<int> frames; ///< of those that were looked at
 };
 
-/// What a shot asks for, what is left out, and what that will take; found without building or rendering anything.
+/// What a shot asks for, what is left out, and what that will take; but for the cost found without building or rendering
+/// anything.
 struct Explanation {
     std::string shot;
     int frames = 0, first_frame = 0, last_frame = 0;
@@ -36,12 +40,21 @@ struct Explanation {
     std::vector<Unread> left_out;
     std::vector<FileExtensions> extensions;
     std::vector<KernelUse> kernels;
+    MemoryForecast memory;
     std::uint64_t pixel_samples = 0;  ///< of a frame, at most
+    std::optional<FrameCost> cost;    ///< where it was asked for
     std::vector<Diagnostic> warnings;
 };
 
-/// Of images the headers are read alone.
-/// @throws InputError
-Explanation explain_shot(const std::filesystem::path& shot, const ShotOverrides& overrides, const DeviceRequest& device);
+struct ExplainOptions {
+    std::filesystem::path shot;
+    ShotOverrides overrides;
+    DeviceRequest device;
+    bool measure = false;  ///< render a little of the middle frame, to say what a frame costs
+};
+
+/// Of images the headers are read alone, unless a frame is rendered.
+/// @throws InputError; where a frame is rendered RenderError and Interrupted, too
+Explanation explain_shot(const ExplainOptions& options);
 
 }  // namespace kadr

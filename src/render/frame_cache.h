@@ -10,6 +10,9 @@
 
 namespace kadr {
 
+/// Eight frames of 1920 x 1080 without layers. A frame that holds needs one, a short loop as many as it has.
+inline constexpr std::size_t kMostCachedBytes = std::size_t{256} << 20;
+
 /// Frames that may come again, of a shot that holds, loops or swings to and fro. The least recently used ones make room;
 /// the newest is always kept.
 class FrameCache {

@@ -28,9 +28,6 @@
 namespace kadr {
 namespace {
 
-/// Eight frames of 1920 x 1080 without layers. A frame that holds needs one, a short loop as many as it has.
-constexpr std::size_t kMostCachedBytes = std::size_t{256} << 20;
-
 void replace_name(std::string& pattern, const std::string& name) {
     static const std::string kPlaceholder = "{name}";
     const std::size_t at = pattern.find(kPlaceholder);

@@ -30,6 +30,7 @@ public:
 
     /// Of what has been read so far.
     Hash content() const { return document_.content(); }
+    std::size_t read_bytes() const { return document_.read_bytes(); }
     std::vector<Diagnostic> take_warnings() { return std::exchange(document_.warnings, {}); }
 
 private:

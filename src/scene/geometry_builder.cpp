@@ -161,6 +161,8 @@ private:
             require_finite(colors, "COLOR_0");
         }
         for (Vec4f& c : colors) c = {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f), std::clamp(c.w, 0.0f, 1.0f)};
+        // Exporters write white for want of another colour, and one times anything is that.
+        if (std::all_of(colors.begin(), colors.end(), [](const Vec4f& c) { return c.x == 1 && c.y == 1 && c.z == 1 && c.w == 1; })) colors = {};
     }
 
     std::vector<std::uint32_t> vertex_order() const {

@@ -400,13 +400,23 @@ std::string GltfDocument::image_name(std::size_t index) const {
     return fmt::format("image {}", index);
 }
 
+std::vector<ByteView> GltfDocument::read_parts() const {
+    std::vector<ByteView> parts{text_};
+    for (std::size_t i = 0; i < model_.bufferViews.size(); ++i)
+        if (asked_[i].load(std::memory_order_relaxed)) parts.push_back(bytes_of(static_cast<int>(i)));
+    for (const Resource& image : image_storage_) parts.push_back(image.bytes());
+    return parts;
+}
+
+std::size_t GltfDocument::read_bytes() const {
+    std::size_t bytes = 0;
+    for (const ByteView part : read_parts()) bytes += part.size();
+    return bytes;
+}
+
 Hash GltfDocument::content() const {
     Hasher hasher;
-    const auto add = [&](ByteView bytes) { hasher.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())); };
-    add(text_);
-    for (std::size_t i = 0; i < model_.bufferViews.size(); ++i)
-        if (asked_[i].load(std::memory_order_relaxed)) add(bytes_of(static_cast<int>(i)));
-    for (const Resource& image : image_storage_) add(image.bytes());
+    for (const ByteView part : read_parts()) hasher.add(std::string_view(reinterpret_cast<const char*>(part.data()), part.size()));
     return hasher.finish();
 }
 

@@ -49,6 +49,8 @@ public:
 
     /// Bytes of the file and all its buffers: what a sane scene is in proportion to.
     std::size_t total_bytes() const { return total_bytes_; }
+    /// Bytes of the same: the JSON, and the buffer views and images that were asked for.
+    std::size_t read_bytes() const;
     /// Hash of the JSON, and of the buffer views and images that were asked for.
     Hash content() const;
 
@@ -72,6 +74,8 @@ private:
         Bytes decoded;
         ByteView bytes() const { return decoded.empty() ? file.bytes() : ByteView(decoded); }
     };
+    /// The JSON, and what was asked for.
+    std::vector<ByteView> read_parts() const;
     Resource resolve(const std::string& uri, std::string_view pointer) const;
     ByteView bytes_of(int buffer_view) const;
 

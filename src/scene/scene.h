@@ -164,6 +164,7 @@ struct SceneFile {
     std::vector<std::string> extensions;         ///< that it names and Kadr follows
     std::vector<std::string> ignored_extensions; ///< that it names and Kadr does not know
     std::vector<std::string> unused_images;      ///< that no material of a mesh names
+    std::size_t read_bytes = 0;                  ///< of the file and of what it names: those that were asked for
 };
 
 /// Everything the glTF files of a shot hold, merged into one index space; built once a shot.

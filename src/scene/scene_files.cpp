@@ -213,7 +213,10 @@ Scene SceneFiles::load(const SceneNeeds& needs, const LoadOptions& options) && {
         for (std::size_t skin = first; skin < end; ++skin)
             if (needs.skins[skin]) scene.skins[skin].inverse_bind = parts_[entries_[entry].part]->loader.bind_matrices(skin - first);
     }
-    for (std::size_t entry = 0; entry < entries_.size(); ++entry) scene.files[entry].content = parts_[entries_[entry].part]->loader.content();
+    for (std::size_t entry = 0; entry < entries_.size(); ++entry) {
+        scene.files[entry].content = parts_[entries_[entry].part]->loader.content();
+        scene.files[entry].read_bytes = parts_[entries_[entry].part]->loader.read_bytes();
+    }
     for (const auto& part : parts_) append_all(scene.warnings, part->loader.take_warnings());
     drop_textures(scene, textures);
     drop_geometries(scene);

@@ -104,6 +104,16 @@ TEST(Needs, AreReadAttributeByAttribute) {
     }
 }
 
+TEST(Needs, OfColorsEndWhereAllAreWhite) {
+    const auto colors_of = [](const std::vector<float>& colors) {
+        GltfBuilder file;
+        file.triangle()["attributes"]["COLOR_0"] = file.floats(colors, "VEC3");
+        return file.load().geometries.at(0).colors.size();
+    };
+    EXPECT_EQ(colors_of({1, 1, 1, 1, 1, 1, 1, 1, 1}), 0u) << "they change nothing";
+    EXPECT_EQ(colors_of({1, 1, 1, 1, 1, 1, 1, 1, 0.999f}), 3u);
+}
+
 TEST(Needs, OfTexturesAreReadRoleByRole) {
     for (int role = 0; role < kTextureUses; ++role) {
         Everything file;
