@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "device/embree/frame_facts.h"
+#include "device/requirement_names.h"
 #include "output/image_io.h"
 #include "render/loaded_shot.h"
 #include "render/render_job.h"
@@ -21,7 +22,7 @@ std::vector<int> telling_frames(const std::vector<int>& all) {
 
 void add_kernels(const LoadedShot& loaded, const std::vector<SceneSnapshot>& parts, int frame, std::vector<KernelUse>& uses) {
     for (const SceneSnapshot& part : parts) {
-        const std::string name = name_of_requirements(requirements_of(loaded.scene(), part));
+        const std::string name = names_of_requirements(kernel_requirements_of(loaded.scene(), part));
         auto use = std::find_if(uses.begin(), uses.end(), [&](const KernelUse& known) { return known.name == name; });
         if (use == uses.end()) use = uses.insert(uses.end(), {name, {}});
         if (use->frames.empty() || use->frames.back() != frame) use->frames.push_back(frame);

@@ -158,14 +158,20 @@ private:
         if (shot.shutter.rolling.direction != RollingShutter::Direction::none) askers_.add(Feature::shutter_rolling, "shutter.rolling");
     }
 
-    /// Nodes that the camera stands on, turns about, looks at or focuses on.
-    std::vector<int> camera_nodes() const {
+    /// What the camera turns about, looks at or focuses on.
+    std::vector<NodeReference> camera_references() const {
         const CameraSpec& camera = shot_.shot().camera;
-        std::vector<int> nodes{bindings_.camera_node};
-        if (camera.around) nodes.push_back(shot_.node_of(*camera.around));
-        if (const auto* target = std::get_if<NodeReference>(&camera.look_at); target && !camera.gltf) nodes.push_back(shot_.node_of(*target));
+        std::vector<NodeReference> all;
+        if (camera.around) all.push_back(*camera.around);
+        if (const auto* target = std::get_if<NodeReference>(&camera.look_at); target && !camera.gltf) all.push_back(*target);
         if (camera.focus)
-            if (const auto* focus = std::get_if<NodeReference>(&*camera.focus)) nodes.push_back(shot_.node_of(*focus));
+            if (const auto* focus = std::get_if<NodeReference>(&*camera.focus)) all.push_back(*focus);
+        return all;
+    }
+    /// The same as nodes, and the one that it stands on.
+    std::vector<int> camera_nodes() const {
+        std::vector<int> nodes{bindings_.camera_node};
+        for (const NodeReference& reference : camera_references()) nodes.push_back(shot_.node_of(reference));
         std::erase(nodes, -1);
         return nodes;
     }
@@ -175,17 +181,24 @@ private:
         if (camera.f_stop) askers_.add(Feature::camera_lens, "camera.f_stop");
         if (bindings_.camera_node >= 0 && shot_.scene().cameras[index(shot_.scene().nodes[index(bindings_.camera_node)].camera)].orthographic)
             askers_.add(Feature::camera_orthographic, node_name(bindings_.camera_node));
-        if (!blurs([&](double time) { return camera_at(shot_, time); })) return;
-        bool found = false;
-        const auto say = [&](const std::string& who) {
-            askers_.add(Feature::blur_camera, who);
-            found = true;
-        };
+        const std::vector<std::string> movers = camera_movers();
+        if (movers.empty() || !blurs([&](double time) { return camera_at(shot_, time); })) return;
+        for (const std::string& mover : movers) askers_.add(Feature::blur_camera, mover);
+    }
+
+    /// What may move the camera or change its lens.
+    std::vector<std::string> camera_movers() const {
+        std::vector<std::string> movers;
         for (const TrackInfo& track : tracks_of(shot_.shot()))
-            if (track.name.starts_with("camera.")) say(track.name);
+            if (track.name.starts_with("camera.")) movers.push_back(track.name);
         for (const int node : camera_nodes())
-            if (bindings_.rig.moves(node)) say(node_name(node));
-        if (!found) say("camera");  // a scene's transform that it stands in, or what clips drive of its lens
+            if (bindings_.rig.moves(node)) movers.push_back(node_name(node));
+        const int camera = bindings_.camera_node;
+        if (camera >= 0 && !bindings_.properties.of(bindings_.rig.file_of(camera), PropertyOwner::camera, shot_.scene().nodes[index(camera)].camera).empty())
+            movers.push_back(fmt::format("clips of scene '{}'", shot_.scene().files[index(bindings_.rig.file_of(camera))].id));
+        for (const NodeReference& reference : camera_references())
+            if (shot_.node_of(reference) < 0 && may_move(reference)) movers.push_back(fmt::format("scene '{}'", reference.text));
+        return movers;
     }
 
     /// Whether any copy of a seed is shown in any frame.
@@ -232,8 +245,16 @@ private:
         const Deformer& deformer = bindings_.deformers[index(seed.deformer)];
         if (deformer.skeleton) askers_.add(Feature::skins, node);
         if (!shot_.scene().geometries[seed.geometry].targets.empty()) askers_.add(Feature::morph_targets, node);
+        if (!may_bend(deformer)) return;
         const auto pose = [&](double time) { return deformer.pose(shot_.scene(), bindings_, time); };
         if ((offset(seed) && opens()) || blurs(pose)) askers_.add(Feature::blur_vertices, node);
+    }
+
+    /// Whether anything ever moves its vertices.
+    bool may_bend(const Deformer& deformer) const {
+        const auto moves = [&](int node) { return bindings_.rig.moves(node); };
+        if (deformer.skeleton && std::any_of(deformer.skeleton->nodes().begin(), deformer.skeleton->nodes().end(), moves)) return true;
+        return bindings_.morphs.moves(deformer.mesh_node);
     }
 
     void add_material(std::uint32_t material) {
@@ -292,7 +313,11 @@ private:
             if (track.name.starts_with(prefix) && track_blurs(track)) askers_.add(Feature::blur_lights, name);
         if (!light.look_at) return;
         if (const auto* target = std::get_if<NodeReference>(&*light.look_at))
-            if (blurs([&](double time) { return bindings_.position_of(*target, time); })) askers_.add(Feature::blur_lights, name);
+            if (may_move(*target) && blurs([&](double time) { return bindings_.position_of(*target, time); })) askers_.add(Feature::blur_lights, name);
+    }
+    bool may_move(const NodeReference& reference) const {
+        const int node = shot_.node_of(reference);
+        return node >= 0 ? bindings_.rig.moves(node) : varies(shot_.shot().scenes[index(shot_.scene_of(reference))].transform);
     }
     bool track_blurs(const TrackInfo& track) const {
         const bool seen = std::any_of(openings_.begin(), openings_.end(), [&](const Opening& o) {

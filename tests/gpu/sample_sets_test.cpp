@@ -7,6 +7,7 @@
 #include <string>
 
 #include "device/embree/embree_scene.h"
+#include "device/embree/frame_facts.h"
 #include "device/requirement_names.h"
 #include "frame/snapshot.h"
 #include "kernels/gpu/entry_points.h"
@@ -42,6 +43,7 @@ std::set<std::string> required(RTCDevice device, const fs::path& file) {
     for (const int frame : {frames.front(), frames[frames.size() / 2], frames.back()})
         for (const SceneSnapshot& part : make_snapshots(loaded.bound(), loaded.bound().sequence().frame(frame))) {
             scene.set_frame(part);
+            EXPECT_EQ(kernel_requirements_of(loaded.scene(), part), scene.requirements()) << file << ", frame " << frame << ", found without building it";
             const unsigned needs = scene.requirements() | kernels::requirement::kTransforms;
             const kernels::IntegratorKind integrator = part.settings.integrator;
             sets.insert(name_of(integrator, kernels::kernel_requirements(integrator, needs)));

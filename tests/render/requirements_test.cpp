@@ -63,10 +63,9 @@ TEST(Requirements, CountWhoAsks) {
     Plain stage;
     stage.add_node("Other", stage.ball);
     stage.animate(stage.ball).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {2, {1, 0, 0}}});
-    const Requirement* blur = stage.needs().find(Feature::blur_instances);
-    EXPECT_FALSE(stage.needs().needs(Feature::blur_camera));
     const RequirementSet set = stage.needs();
-    blur = set.find(Feature::blur_instances);
+    EXPECT_FALSE(set.needs(Feature::blur_camera));
+    const Requirement* blur = set.find(Feature::blur_instances);
     ASSERT_TRUE(blur);
     EXPECT_EQ(blur->first, "node 'stage/Ball'");
     EXPECT_EQ(blur->count, 2u);
@@ -182,6 +181,15 @@ TEST(Requirements, OfLongShotsCountWhatMayMove) {
     for (int frame = 2; frame < 2 * static_cast<int>(kMostFramesLookedAt); ++frame) stage.shot.timing.frames.push_back(frame);
     stage.animate(stage.ball).translation = track<glm::dvec3>({{3.1, {0, 0, 0}}, {3.2, {1, 0, 0}}});
     EXPECT_TRUE(stage.needs().needs(Feature::blur_instances)) << "a move of a tenth of a second, between the frames that are looked at";
+    LightSpec light;
+    light.id = "key";
+    light.look_at = NodeReference{"stage", {}};
+    stage.shot.lights.push_back(light);
+    stage.node(stage.add_node("Bent")).weights = {0.5};
+    stage.scene.geometries[0].targets.push_back({{0}, {{0, 0, 1}}, {}, {}});
+    stage.scene.geometries[0].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    stage.scene.geometries[0].indices = {0, 1, 2};
+    for (const Feature still : {Feature::blur_camera, Feature::blur_lights, Feature::blur_vertices}) EXPECT_FALSE(stage.needs().needs(still)) << info_of(still).name;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "device/embree/alpha_filter.h"
 #include "device/embree/flatten.h"
+#include "device/embree/frame_facts.h"
 #include "device/tables/motion_keys.h"
 
 namespace kadr {
@@ -257,13 +258,6 @@ void EmbreeScene::set_instance(const SceneSnapshot& snapshot, std::size_t index,
         upper_.show(index, mesh, std::span(matrices_).subspan(motion.first, motion.count));
 }
 
-void EmbreeScene::set_requirements() {
-    requirements_ = materials_.requirements();
-    if (instance_count_ > 0) requirements_ |= kernels::requirement::kTransforms;
-    if (deforming_.bends()) requirements_ |= kernels::requirement::kDeformation;
-    const kernels::LightSet& lights = view_.lights;
-    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map)
-        requirements_ |= kernels::requirement::kEmitters;
-}
+void EmbreeScene::set_requirements() { requirements_ = kernel_requirements_of(materials_, instance_count_ > 0, deforming_.bends(), view_.lights); }
 
 }  // namespace kadr

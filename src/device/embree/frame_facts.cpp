@@ -1,38 +1,43 @@
 #include "device/embree/frame_facts.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "device/embree/flatten.h"
-#include "device/tables/material_table.h"
+#include "device/tables/light_tables.h"
 #include "kernels/light/light.h"
 
 namespace kadr {
 namespace {
 
-constexpr std::pair<unsigned, const char*> kNames[] = {{kernels::requirement::kMaps, "maps"},
-                                                       {kernels::requirement::kTransforms, "transforms"},
-                                                       {kernels::requirement::kEmitters, "emitters"},
-                                                       {kernels::requirement::kDeformation, "deformation"}};
-
-bool shows_maps(const Scene& scene, const SceneSnapshot& snapshot, MaterialTable& materials) {
+void note_shown(const Scene& scene, const SceneSnapshot& snapshot, MaterialTable& materials) {
     std::vector<kernels::Geometry> geometries(scene.geometries.size(), kernels::Geometry{});
-    for (std::size_t i = 0; i < geometries.size(); ++i)
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        geometries[i].triangle_count = static_cast<unsigned>(scene.geometries[i].indices.size() / 3);
         if (!scene.geometries[i].colors.empty()) geometries[i].colors = scene.geometries[i].colors.data();
+        if (!scene.geometries[i].uv[1].empty()) geometries[i].uv1 = scene.geometries[i].uv[1].data();
+    }
     std::vector<kernels::Instance> instances;
     for (const SnapshotInstance& instance : snapshot.instances) instances.push_back({instance.geometry, instance.material, instance.id});
     materials.note_shown(snapshot, instances, geometries);
-    return materials.shows_maps();
 }
 
-bool shows_emitters(const SceneSnapshot& snapshot, const MaterialTable& materials) {
-    const auto emits = [&](const SnapshotInstance& instance) {
+bool shines(const SceneSnapshot& snapshot, const MaterialTable& materials) {
+    return std::any_of(snapshot.instances.begin(), snapshot.instances.end(), [&](const SnapshotInstance& instance) {
         const kernels::Material& material = materials.data()[instance.material];
         return instance.mask != 0 && !material.unlit && kernels::luminance(material.emission) > 0;
-    };
-    const auto has_surface = [&](const LightKeys& light) { return !kernels::is_delta(snapshot.light_keys[light.first]); };
-    return snapshot.environment.image || std::any_of(snapshot.lights.begin(), snapshot.lights.end(), has_surface) ||
-           std::any_of(snapshot.instances.begin(), snapshot.instances.end(), emits);
+    });
+}
+
+/// As far as it decides anything: an image of the environment is one white pixel, all that shines one triangle.
+kernels::LightSet lights_of(const SceneSnapshot& snapshot, const MaterialTable& materials) {
+    const Image white{1, 1, {"R", "G", "B"}, {1, 1, 1}};
+    kernels::LightSet lights{};
+    LightTables tables;
+    tables.set(snapshot.light_keys, snapshot.lights);
+    tables.fill(lights);
+    fill_environment(snapshot.environment, snapshot.environment.image ? EnvironmentTables(white) : EnvironmentTables(), lights);
+    lights.triangle_count = shines(snapshot, materials) ? 1 : 0;
+    return lights;
 }
 
 bool shows_instances(const Scene& scene, const SceneSnapshot& snapshot) {
@@ -44,23 +49,20 @@ bool shows_instances(const Scene& scene, const SceneSnapshot& snapshot) {
 
 }  // namespace
 
-unsigned requirements_of(const Scene& scene, const SceneSnapshot& snapshot) {
-    MaterialTable materials(scene);
-    materials.set(snapshot);
-    unsigned requirements = 0;
-    if (shows_maps(scene, snapshot, materials)) requirements |= kernels::requirement::kMaps;
-    if (shows_instances(scene, snapshot)) requirements |= kernels::requirement::kTransforms;
-    if (std::any_of(snapshot.deformed.begin(), snapshot.deformed.end(), [](const auto& mesh) { return mesh->key_count > 1; }))
-        requirements |= kernels::requirement::kDeformation;
-    if (shows_emitters(snapshot, materials)) requirements |= kernels::requirement::kEmitters;
+unsigned kernel_requirements_of(const MaterialTable& materials, bool instances, bool bends, const kernels::LightSet& lights) {
+    unsigned requirements = materials.requirements();
+    if (instances) requirements |= kernels::requirement::kTransforms;
+    if (bends) requirements |= kernels::requirement::kDeformation;
+    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map) requirements |= kernels::requirement::kEmitters;
     return requirements;
 }
 
-std::string name_of_requirements(unsigned requirements) {
-    std::string name;
-    for (const auto& [bit, word] : kNames)
-        if ((requirements & bit) != 0) name += (name.empty() ? "" : " + ") + std::string(word);
-    return name.empty() ? "plain" : name;
+unsigned kernel_requirements_of(const Scene& scene, const SceneSnapshot& snapshot) {
+    MaterialTable materials(scene);
+    materials.set(snapshot);
+    note_shown(scene, snapshot, materials);
+    const bool bends = std::any_of(snapshot.deformed.begin(), snapshot.deformed.end(), [](const auto& mesh) { return mesh->key_count > 1; });
+    return kernel_requirements_of(materials, shows_instances(scene, snapshot), bends, lights_of(snapshot, materials));
 }
 
 }  // namespace kadr

@@ -1,16 +1,18 @@
 #pragma once
 
-#include <string>
-
+#include "device/tables/material_table.h"
 #include "frame/snapshot.h"
+#include "kernels/scene/scene_view.h"
 
 namespace kadr {
 
-/// What a frame asks of the kernels: a set of kernels::requirement bits, as EmbreeScene finds it, but without building
-/// anything and without texels.
-unsigned requirements_of(const Scene& scene, const SceneSnapshot& snapshot);
+/// What a frame asks of the kernels, as a set of kernels::requirement bits.
+/// @param materials  which know what is shown
+/// @param instances  whether anything is not flattened
+/// @param bends      whether any mesh bends while the shutter is open
+unsigned kernel_requirements_of(const MaterialTable& materials, bool instances, bool bends, const kernels::LightSet& lights);
 
-/// "textures + instances"; "plain" where there is nothing to name.
-std::string name_of_requirements(unsigned requirements);
+/// The same of a frame that no device has been given: nothing is built, and textures need no texels.
+unsigned kernel_requirements_of(const Scene& scene, const SceneSnapshot& snapshot);
 
 }  // namespace kadr
