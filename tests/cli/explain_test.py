@@ -166,6 +166,24 @@ class Unneeded(ExplainTest):
             file.truncate(3 << 30)
         self.assertLess(self.peak_bytes("render", self.shot, "--threads", "2", "--overwrite"), plain + (64 << 20))
 
+    def test_image_of_gigabytes_inside_a_glb_file_costs_no_memory(self):
+        plain = self.peak_bytes("render", self.shot, "--threads", "2")
+        gltf = json.loads((self.folder / "ball.gltf").read_text())
+        size = 3 << 30
+        gltf["buffers"].insert(0, {"byteLength": size})
+        for view in gltf["bufferViews"]:
+            view["buffer"] = 1
+        gltf["bufferViews"].append({"buffer": 0, "byteLength": size})
+        gltf["images"] = [{"bufferView": 2, "mimeType": "image/png"}]
+        text = json.dumps(gltf).encode()
+        text += b" " * (-len(text) % 4)
+        with open(self.folder / "ball.glb", "wb") as file:
+            file.write(b"glTF" + struct.pack("<II", 2, 20 + len(text) + 8 + size) + struct.pack("<I4s", len(text), b"JSON") + text)
+            file.write(struct.pack("<I4s", size, b"BIN\0"))
+            file.truncate(20 + len(text) + 8 + size)
+        self.shot.write_text(self.shot.read_text().replace("ball.gltf", "ball.glb"))
+        self.assertLess(self.peak_bytes("render", self.shot, "--threads", "2", "--overwrite"), plain + (64 << 20))
+
     def test_clip_that_nothing_plays(self):
         def change(gltf):
             gltf["animations"] = [{"name": name, "samplers": [{"input": 0, "output": 0}],
