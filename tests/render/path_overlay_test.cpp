@@ -65,7 +65,7 @@ TEST(ScreenCameraTest, AgreesWithTheRenderersProjection) {
     const BoundShot bound = stage.bind();
     const CameraState state = camera_at(bound, 0);
     const ScreenCamera camera(state, kWidth, kHeight);
-    const auto keys = fit_camera(bound, 0, 0, glm::dvec3(0)).keys;
+    const auto keys = fit_camera(bound, 0, 0, RenderSpace{}).keys;
     kernels::Camera kernel = make_camera(bound, 0);
     kernel.keys = keys.data();
     kernel.key_count = 1;
