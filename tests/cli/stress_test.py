@@ -23,7 +23,7 @@ class QuickSweep(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.output = Path(cls.folder.name) / "sweep"
-        cls.run = stress("--quick", "--output", str(cls.output))
+        cls.sweep = stress("--quick", "--output", str(cls.output))
         cls.cells = json.loads((cls.output / "report.json").read_text())
 
     @classmethod
@@ -31,8 +31,8 @@ class QuickSweep(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_everything_that_is_stated_to_be_safe_is_sound(self):
-        faults = [line for line in self.run.stdout.splitlines() if line.startswith("FAILED")]
-        self.assertEqual((self.run.returncode, faults), (0, []), self.run.stderr)
+        faults = [line for line in self.sweep.stdout.splitlines() if line.startswith("FAILED")]
+        self.assertEqual((self.sweep.returncode, faults), (0, []), self.sweep.stderr)
         safe = [cell for cell in self.cells if cell["stated_safe"]]
         self.assertGreater(len(safe), 100)
         for figure in ("holes", "wrong_surfaces", "false_shadows", "leaks", "dropped_samples", "not_finite"):

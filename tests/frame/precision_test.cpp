@@ -27,10 +27,9 @@ TEST(PrecisionWarnings, NoneForAnOrdinaryShot) {
 
 TEST(PrecisionWarnings, NamesTheCameraWhoseLensIsTooLong) {
     Stage stage;
-    stage.shot.image.height = 1080;
     stage.shot.camera.focal_length_mm = Track<double>(10000);
-    // 24 mm over 1080 pixels, 10 m away: 2.2e-6 rad; 2^-24 of a radian is 0.027 of that.
-    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.2e-06 rad wide at 0 s, and the directions of rays are off by 0.027 of it")));
+    // 36 mm over 1280 pixels, 10 m away: 2.8e-6 rad; 2^-24 of a radian is 0.021 of that.
+    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.8e-06 rad wide at 0 s, and the directions of rays are off by 0.021 of it")));
     stage.shot.camera.focal_length_mm = Track<double>(5000);
     EXPECT_THAT(warnings_of(stage), IsEmpty());
 }

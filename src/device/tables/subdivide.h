@@ -18,11 +18,12 @@ struct Subdivision {
     std::vector<Midpoint> added;         ///< vertices beyond those that there were
 };
 
-/// Halves edges until none is longer than 256 times its distance from the origin (or 4096, near it).
+/// Halves edges until no triangle has one that is longer than 256 times its distance from the origin (or 4096, near it).
 ///
 /// A point of a triangle is as precise as the float coordinates of its corners: on a terrain of 10 km with corners at its
 /// rim, the ground under a screw has the precision of the rim, a millimetre, as large as the screw. Smaller triangles have
-/// corners near by. Whether an edge is halved depends on its two ends alone, so that neighbours agree and no crack opens.
+/// corners near by. An edge is halved for all triangles that have its two ends, whatever vertices lie there, so that no crack
+/// opens.
 ///
 /// @param positions  in the coordinates whose origin is near the camera; the new vertices are added at its end
 /// @return           no indices: nothing was to be done
