@@ -107,6 +107,8 @@ std::string html_page(const std::vector<CellResult>& results) {
 
 nlohmann::ordered_json object_of(const CellResult& result) {
     nlohmann::ordered_json json{{"cell", name_of(result.cell)}, {"axis", result.cell.axis->name}, {"value", result.cell.value}, {"shot", result.shot.filename().string()}};
+    json["ordinary"] = result.cell.axis->ordinary;
+    json["same_picture"] = result.cell.axis->same_picture;
     if (result.cell.second) json["second"] = result.cell.second->name, json["second_value"] = result.cell.second_value;
     json["sound"] = result.sound();
     json["stated_safe"] = is_safe(result.cell);
