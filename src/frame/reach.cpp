@@ -43,7 +43,7 @@ void Reach::add(const Reach& other) {
 }
 
 void check_reach(const BoundShot& shot, const SceneSnapshot& snapshot, const Reach& reach) {
-    const double camera = camera_reach_m(snapshot), all = std::max(camera, reach.farthest_m), limit_m = kFarthest * std::min(snapshot.unit_m, 1.0);
+    const double camera = camera_reach_m(snapshot), all = std::max({camera, reach.farthest_m, snapshot.unit_m}), limit_m = kFarthest * std::min(snapshot.unit_m, 1.0);
     if (!(camera <= limit_m))
         throw InputError(problem_at(shot.shot().camera.where, fmt::format("the camera is {:.3g} m from what it looks at, or moves that far, at {} s", camera, format_number(snapshot.open_s)),
                                     fmt::format("expected at most {:.0e} m", limit_m)));

@@ -76,7 +76,7 @@ class Arguments(unittest.TestCase):
         run = stress("distanse")
         self.assertEqual(run.returncode, 2)
         self.assertIn("distanse", run.stderr)
-        self.assertIn("did you mean 'distance'", run.stderr)
+        self.assertIn("did you mean distance?", run.stderr)
 
     def test_json_has_an_object_a_line(self):
         with tempfile.TemporaryDirectory() as folder:
