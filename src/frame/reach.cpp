@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFarthest = 1e17;  // metres, and units of the render space
 constexpr double kLargestRatio = 1e17;
+constexpr double kSmallest = 1e-12;  // units: the cube of a scale has to be a float, or Embree finds no inverse
 
 [[noreturn]] void refuse(const BoundShot& shot, std::uint32_t instance, double open_s, const std::string& what, std::string expected) {
     throw InputError(problem_of_node(shot, shot.bindings().instances[instance].seed->node, what, open_s, std::move(expected)));
@@ -49,6 +50,9 @@ void check_reach(const BoundShot& shot, const SceneSnapshot& snapshot, const Rea
                                     fmt::format("expected at most {:.0e} m", limit_m)));
     if (!(reach.farthest_m <= limit_m))
         refuse(shot, reach.farthest, snapshot.open_s, fmt::format("reaches {:.3g} m from the camera", reach.farthest_m), fmt::format("expected at most {:.0e} m", limit_m));
+    if (reach.smallest_m < kSmallest * snapshot.unit_m)
+        refuse(shot, reach.smallest, snapshot.open_s, fmt::format("is {:.3g} m large in a picture of {:.3g} m", reach.smallest_m, snapshot.unit_m),
+               fmt::format("expected at least {:.0e} of what the picture shows; make it larger, or leave it out", kSmallest));
     if (reach.smallest_m * kLargestRatio < all)
         refuse(shot, reach.smallest, snapshot.open_s, fmt::format("is {:.3g} m large in a scene of {:.3g} m", reach.smallest_m, all),
                fmt::format("expected less than {:.0e} times its size; make it larger", kLargestRatio));

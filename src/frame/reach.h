@@ -21,8 +21,9 @@ struct Reach {
     void add(const Reach& other);
 };
 
-/// Devices trace in floats, and rays in the coordinates of single meshes as well: beyond 1e17 metres or units of the render space, or of things 1e17 times as
-/// large as a mesh, the squares of their numbers come near the end of what floats hold, and Embree ends the program.
+/// Devices trace in floats, and rays in the coordinates of single meshes as well: beyond 1e17 metres or units of the render
+/// space, of things 1e17 times as large as a mesh, or where the cube of a scale vanishes, their numbers come near the end of
+/// what floats hold, and Embree ends the program.
 /// @throws InputError  naming the node, or the camera
 void check_reach(const BoundShot& shot, const SceneSnapshot& snapshot, const Reach& reach);
 

@@ -237,7 +237,7 @@ TEST(MotionFrames, WhatFloatsCannotHoldBesideEachOtherIsRefusedByName) {
     tiny.add_node("house");
     tiny.node(tiny.add_node("atom")).scale = glm::dvec3(1e-20);
     EXPECT_EQ(message_of([&] { tiny.snapshot(); }),
-              "stage.yaml:3:5: error: node 'stage/atom' is 1e-20 m large in a scene of 5 m at 0 s\n  expected less than 1e+17 times its size; make it larger");
+              "stage.yaml:3:5: error: node 'stage/atom' is 1e-20 m large in a picture of 1 m at 0 s\n  expected at least 1e-12 of what the picture shows; make it larger, or leave it out");
     Stage away;
     away.add_node("house");
     away.shot.camera.position = glm::dvec3(0, 0, 2e17);
