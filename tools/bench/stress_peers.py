@@ -45,7 +45,7 @@ OTHER_SEED = 7
 
 # Axis: (value, whether the picture stays from there on upwards or downwards). By less than a step: a lens of 1000 times the subject's size
 # differs from a parallel one by 1e-3 of the picture; a gap or a shell of 1e-3 of the ball by 0.03 pixels; and so on.
-SETTLED = {"telephoto": (1e3, "up"), "thickness": (1e-3, "down"), "gap": (1e-4, "near"), "elevation": (1e-4, "down"), "roughness": (1e-4, "down"), "sun_diameter": (1e-3, "down"),
+SETTLED = {"telephoto": (1e3, "up"), "authored_telephoto": (1e3, "up"), "thickness": (1e-3, "down"), "gap": (1e-4, "near"), "elevation": (1e-4, "down"), "roughness": (1e-4, "down"), "sun_diameter": (1e-3, "down"),
            "spot_edge": (1e-3, "down"), "area_side": (1e-3, "down"), "travel": (1e-3, "down"), "turn": (1e-6, "down"), "clip_turn": (1e-6, "down"), "shrink": (1e-3, "down"),
            "clip_shrink": (1e-3, "down"), "range": (1e3, "up")}
 # What the two define differently, so that pictures of another value than the ordinary one say nothing about errors.
