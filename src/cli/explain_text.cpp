@@ -71,7 +71,7 @@ std::string extensions_text(const std::vector<FileExtensions>& files) {
 
 std::string kernels_text(const Explanation& e) {
     std::string text = fmt::format("kernels\n  {}: {}\n", e.device, e.device_why);
-    for (const KernelUse& use : e.kernels) text += fmt::format("  {} with {}: frame{} {}\n", e.integrator, use.name, use.frames.size() == 1 ? "" : "s", fmt::join(use.frames, ", "));
+    for (const KernelUse& use : e.kernels) text += fmt::format("  {}: frame{} {}\n", use.name == "nothing" ? e.integrator + ", plain" : e.integrator + " with " + use.name, use.frames.size() == 1 ? "" : "s", fmt::join(use.frames, ", "));
     return text;
 }
 
