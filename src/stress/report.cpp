@@ -84,7 +84,7 @@ std::string html_head() {
 std::string html_ranges(const std::vector<CellResult>& results) {
     std::string rows;
     for (const SafeRange& range : safe_ranges(results))
-        rows += fmt::format("<tr><th class=\"{}\">{}</th><td class=\"note\">{}</td><td class=\"note\">{}</td></tr>\n", range.complete ? "ok" : "bad", escaped(range.axis->name), escaped(range.text()),
+        rows += fmt::format("<tr><th class=\"{}\">{}</th><td class=\"note\">{}</td><td class=\"note\">{}</td></tr>\n", range.complete ? "ok" : "beyond", escaped(range.axis->name), escaped(range.text()),
                             escaped(range.axis->meaning));
     return "<table><tr><th>axis</th><th>safe</th><th>what it is</th></tr>\n" + rows + "</table>\n";
 }
@@ -95,7 +95,7 @@ std::string html_page(const std::vector<CellResult>& results) {
     std::string page = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>kadr stress</title><style>\n"
                        "body{font:14px system-ui,sans-serif;margin:2em;color:#222}table{border-collapse:collapse;margin:1em 0}\n"
                        "th,td{padding:2px 8px;text-align:right;border:1px solid #ddd}th:first-child,td.note{text-align:left}\n"
-                       "th.ok{background:#e2f3e2}th.bad{background:#f2a9a9}th.beyond{background:#f6e7c8}td.note{max-width:46em;color:#555}\n"
+                       "th.ok{background:#e2f3e2}th.bad{background:#f2a9a9}th.beyond{background:#f6e7c8}td.note{min-width:12em;max-width:46em;color:#555}th{vertical-align:top}\n"
                        "</style></head><body><h1>kadr stress</h1>\n";
     page += fmt::format("<p>{} cells, {} not sound. {} camera rays and {} shadow rays against the reference in double: {} holes, {} wrong surfaces, {} false shadows, {} leaks. "
                         "A cell is sound where its picture is within a step of eight bits of the reference on average, no ray contradicts it and no sample is lost.</p>\n",
