@@ -112,5 +112,37 @@ TEST(Lights, SayWhenTheyHaveNoDirection) {
               "  expected a direction other than [0, 0, 0]");
 }
 
+/// Lengths count in the frame's unit, and with them what is measured at a metre.
+TEST(LightKeys, CountLengthsInTheUnitOfTheFrame) {
+    Stage stage;
+    stage.add_node("Cube");
+    stage.shot.camera.position = glm::dvec3(0, 0, 0.01);  // shows 5 mm: the unit is 2^-8 m
+    LightSpec point, panel, sun;
+    point.kind = LightKind::point;
+    point.strength = Track<double>(3.0);
+    point.position = glm::dvec3(0, 1, 0);
+    point.radius_m = Track<double>(0.5);
+    point.range_m = Track<double>(2.0);
+    panel = point;
+    panel.kind = LightKind::area;
+    panel.direction = Track<glm::dvec3>(glm::dvec3(0, -1, 0));
+    panel.size_m = Track<glm::dvec2>(glm::dvec2(4, 4));
+    sun = point;
+    sun.kind = LightKind::directional;
+    sun.direction = Track<glm::dvec3>(glm::dvec3(0, -1, 0));
+    stage.shot.lights = {point, panel, sun};
+    const SceneSnapshot snapshot = stage.snapshot();
+    const double units = 1 / snapshot.unit_m;  // of a metre
+    ASSERT_GT(units, 1);
+    const kernels::Light &p = snapshot.light_keys[0], &a = snapshot.light_keys[1], &s = snapshot.light_keys[2];
+    EXPECT_EQ(p.position.y, 1 * units);
+    EXPECT_EQ(p.radius, 0.5 * units);
+    EXPECT_EQ(p.range, 2 * units);
+    EXPECT_EQ(p.radiance.x, 3 * units * units);  // candela: lux at one unit
+    EXPECT_EQ(length(a.axis_u), 2 * units);
+    EXPECT_EQ(a.radiance.x, 3);  // nit
+    EXPECT_EQ(s.radiance.x, 3);  // lux
+}
+
 }  // namespace
 }  // namespace kadr

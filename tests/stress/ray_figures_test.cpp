@@ -119,5 +119,36 @@ TEST(ExactDevice, HasThePictureOfTheProcessorsDevice) {
     }
 }
 
+/// A camera of a glTF file does not say what it looks at, and through a long lens that has to be known.
+TEST(RenderSpace, LiesAboutWhatAnAuthoredLongLensShows) {
+    const LoadedShot loaded(parse_shot(write_shot(axis_of("authored_telephoto"), 1e4, testing::TempDir() + "kadr-lens")));
+    const SceneSnapshot snapshot = make_snapshots(loaded.bound(), loaded.bound().sequence().frame(0)).front();
+    constexpr double kHalfHeight_m = 0.65;  // of what it shows: a ball of 2 m fills the picture
+    EXPECT_LE(glm::length(snapshot.render_origin - glm::dvec3(0, 1.05, 0)), 256 * kHalfHeight_m);
+}
+
+/// Devices measure in the units of a frame; files hold metres.
+TEST(RenderSpace, DepthIsInMetresWhateverTheUnitIs) {
+    FilmLayers layers;
+    layers.depth = true;
+    const auto depths_of = [&](double scale) {
+        const LoadedShot loaded(parse_shot(write_shot(axis_of("scale"), scale, testing::TempDir() + "kadr-depth")));
+        const DeviceChoice choice = make_device({"cpu", 2, 0});
+        load_device(*choice.device, loaded);
+        FrameRequest request;
+        request.layers = layers;
+        const Image image = FrameRenderer(*choice.device).render(loaded.bound(), loaded.bound().sequence().frame(0), request).image;
+        EXPECT_EQ(image.channels.at(4), "depth.Z");
+        std::vector<double> depths;
+        for (std::size_t i = 4; i < image.pixels.size(); i += image.channels.size()) depths.push_back(image.pixels[i]);
+        return depths;
+    };
+    const std::vector<double> ordinary = depths_of(1), tiny = depths_of(1e-6);
+    ASSERT_EQ(ordinary.size(), tiny.size());
+    std::size_t apart = 0;
+    for (std::size_t i = 0; i < tiny.size(); ++i) apart += std::abs(tiny[i] * 1e6 / ordinary[i] - 1) > 1e-4 ? 1 : 0;
+    EXPECT_LT(apart, tiny.size() / 100);  // of pixels at edges, where a sample may meet the other side
+}
+
 }  // namespace
 }  // namespace kadr::stress

@@ -18,6 +18,7 @@
 #include "device/embree/embree_tracer.h"
 #include "device/embree/kernel_sets.h"
 #include "device/embree/tile_job.h"
+#include "device/sample_weight.h"
 #include "device/tables/scene_probe.h"
 #include "kernels/camera/filter_table.h"
 #include "kernels/sampler/sobol.h"
@@ -109,9 +110,7 @@ public:
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
         const kernels::Settings& settings = scene_->view().settings;
-        // A plain part's light is known; of others the kernels know what each line gets.
-        const double dealt = pass.dealt_share > 0 ? pass.dealt_share : part_weight_;
-        shutter_.weight = static_cast<float>((shutter_.plain ? part_weight_ : 1.0) / dealt);
+        shutter_.weight = sample_weight(shutter_, part_weight_, pass);
         const int columns = (film.width() + kTileEdge - 1) / kTileEdge,
                   rows = (film.height() + kTileEdge - 1) / kTileEdge;
         tbb::enumerable_thread_specific<Worker> workers([&] {

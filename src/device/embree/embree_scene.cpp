@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "device/embree/alpha_filter.h"
 #include "device/embree/flatten.h"
-#include "device/embree/frame_facts.h"
+#include "device/tables/kernel_needs.h"
 #include "device/tables/motion_keys.h"
 
 namespace kadr {

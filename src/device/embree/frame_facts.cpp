@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/embree/flatten.h"
+#include "device/tables/kernel_needs.h"
 #include "device/tables/light_tables.h"
 #include "kernels/light/light.h"
 
@@ -48,14 +49,6 @@ bool shows_instances(const Scene& scene, const SceneSnapshot& snapshot) {
 }
 
 }  // namespace
-
-unsigned kernel_requirements_of(const MaterialTable& materials, bool instances, bool bends, const kernels::LightSet& lights) {
-    unsigned requirements = materials.requirements();
-    if (instances) requirements |= kernels::requirement::kTransforms;
-    if (bends) requirements |= kernels::requirement::kDeformation;
-    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map) requirements |= kernels::requirement::kEmitters;
-    return requirements;
-}
 
 unsigned kernel_requirements_of(const Scene& scene, const SceneSnapshot& snapshot) {
     MaterialTable materials(scene);

@@ -1,18 +1,11 @@
 #pragma once
 
-#include "device/tables/material_table.h"
 #include "frame/snapshot.h"
-#include "kernels/scene/scene_view.h"
 
 namespace kadr {
 
-/// What a frame asks of the kernels, as a set of kernels::requirement bits.
-/// @param materials  which know what is shown
-/// @param instances  whether anything is not flattened
-/// @param bends      whether any mesh bends while the shutter is open
-unsigned kernel_requirements_of(const MaterialTable& materials, bool instances, bool bends, const kernels::LightSet& lights);
-
-/// The same of a frame that no device has been given: nothing is built, and textures need no texels.
+/// What a frame asks of the kernels on the CPU, as a set of kernels::requirement bits, before any device has been given it:
+/// nothing is built, and textures need no texels.
 unsigned kernel_requirements_of(const Scene& scene, const SceneSnapshot& snapshot);
 
 }  // namespace kadr

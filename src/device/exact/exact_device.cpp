@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "device/exact/exact_scene.h"
 #include "device/exact/exact_tracer.h"
+#include "device/sample_weight.h"
 #include "device/tables/scene_probe.h"
 #include "frame/bindings.h"
 #include "kernels/camera/filter_table.h"
@@ -71,9 +72,7 @@ public:
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
         kernels::Shutter shutter = snapshot_.shutter;
-        // A plain part's light is known; of others the kernels know what each line gets.
-        const double dealt = pass.dealt_share > 0 ? pass.dealt_share : snapshot_.weight;
-        shutter.weight = static_cast<float>((shutter.plain ? snapshot_.weight : 1.0) / dealt);
+        shutter.weight = sample_weight(shutter, snapshot_.weight, pass);
         Sums sums(film);
         Params params{};
         params.filter = &filter_;

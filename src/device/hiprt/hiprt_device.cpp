@@ -12,6 +12,7 @@
 #include "device/hiprt/hiprt_scene.h"
 #include "device/hiprt/launch_queue.h"
 #include "device/hiprt/trace_kernels.h"
+#include "device/sample_weight.h"
 #include "kernels/camera/filter_table.h"
 #include "kernels/gpu/entry_points.h"
 #include "kernels/sampler/sobol.h"
@@ -138,9 +139,7 @@ private:
 
     kernels::LaunchParams params_of(const Pass& pass, const Film& film) {
         const kernels::Settings& settings = scene_->view().settings;
-        // A plain part's light is known; of others the kernels know what each line gets.
-        const double dealt = pass.dealt_share > 0 ? pass.dealt_share : part_weight_;
-        shutter_.weight = static_cast<float>((shutter_.plain ? part_weight_ : 1.0) / dealt);
+        shutter_.weight = sample_weight(shutter_, part_weight_, pass);
         shutter_table_.set(memory_, uploads_, {&shutter_, 1});
         filter_table_.set(memory_, uploads_, {&filter_, 1});
         const std::size_t pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());

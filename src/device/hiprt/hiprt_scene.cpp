@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "device/tables/kernel_needs.h"
+
 namespace kadr {
 
 HiprtScene::HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads)
@@ -225,13 +227,6 @@ void HiprtScene::set_previous(const SceneSnapshot& snapshot) {
     view_.previous_matrices = previous_matrices_.data();
 }
 
-void HiprtScene::set_requirements() {
-    requirements_ = materials_.requirements();
-    if (!tables_.shown.empty()) requirements_ |= kernels::requirement::kTransforms;
-    if (bending_.blurs()) requirements_ |= kernels::requirement::kDeformation;
-    const kernels::LightSet& lights = view_.lights;
-    if (lights.visible_count > 0 || lights.triangle_count > 0 || lights.has_map)
-        requirements_ |= kernels::requirement::kEmitters;
-}
+void HiprtScene::set_requirements() { requirements_ = kernel_requirements_of(materials_, !tables_.shown.empty(), bending_.blurs(), view_.lights); }
 
 }  // namespace kadr
