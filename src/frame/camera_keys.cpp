@@ -284,6 +284,7 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
     for (const DrivenProperty& driven : driven_of(shot)) add(driven.key_times(open_s, close_s, driven_offset_s(shot)));
     if (spec.around) add_node(*spec.around);
     if (const auto* node = std::get_if<NodeReference>(&spec.look_at); node && !spec.gltf) add_node(*node);
+    if (const auto* node = spec.focus ? std::get_if<NodeReference>(&*spec.focus) : nullptr) add_node(*node);
     for (double& time : times) time = (time - open_s) / (close_s - open_s);
     return times;
 }

@@ -223,6 +223,19 @@ TEST(ShutterSplit, PathsAreSplitInTheirCorners) {
     }
 }
 
+TEST(ShutterSplit, AFocusThatFollowsANodeIsSplitInTheCornersOfItsPath) {
+    Stage stage = full_hd();
+    stage.add_node("Cube");
+    const int node = stage.add_node("Focus", -1, false);
+    stage.animate(node).translation = track<glm::dvec3>({{0, {0, 0, 4}}, {0.1931, {0, 0, 0}}, {1, {0, 0, -1}}});
+    stage.shot.camera.focal_length_mm = Track<double>(200.0);
+    stage.shot.camera.f_stop = Track<double>(1.0);
+    stage.shot.camera.focus = NodeReference{"stage/Focus", {}};
+    std::vector<double> closings;
+    for (const SceneSnapshot& part : stage.snapshots()) closings.push_back(part.close_s);
+    EXPECT_THAT(closings, testing::Contains(0.1931));
+}
+
 TEST(ShutterSplit, CopiesAreSplitInTheCornersOfTheirOwnTime) {
     Stage stage = full_hd();
     stage.animate(stage.add_node("Cube")).translation = track<glm::dvec3>({{0, {0, 0, 0}}, {2, {0, 0, 0}}, {2.1931, {1, 0, 0}}, {3, {-1, 0.5, 0}}});
