@@ -1,6 +1,4 @@
 // What stands still is made once, and snapshots share it.
-#include <chrono>
-#include <iostream>
 
 #include <gtest/gtest.h>
 
@@ -93,8 +91,8 @@ TEST(StillInstances, KeepTheirIndicesApartFromThoseThatMove) {
     EXPECT_EQ(snapshot.instances[2].fixed_place, -1);
 }
 
-/// The target is 1 ms; what is asserted leaves room for a busy machine and for a debug build.
-TEST(StillInstances, AHundredThousandCostAFrameNothing) {
+/// Frames hold the lists of what stands still by reference: nothing is copied, fitted or compared (`kadr_bench` times it).
+TEST(StillInstances, AHundredThousandAreSharedByAllFrames) {
     Stage stage;
     stage.add_node("Body");
     InstancesSpec spec;
@@ -103,13 +101,14 @@ TEST(StillInstances, AHundredThousandCostAFrameNothing) {
     const BoundShot bound = stage.bind();
     const SceneSnapshot first = make_snapshots(bound, bound.sequence().frame(0)).front();
     ASSERT_EQ(first.instances.size(), 100'000u);
-    const auto start = std::chrono::steady_clock::now();
-    constexpr int kFrames = 20;
-    for (int frame = 1; frame <= kFrames; ++frame)
-        EXPECT_EQ(make_snapshots(bound, bound.sequence().frame(frame)).front().geometry_key, first.geometry_key);
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / kFrames;
-    std::cout << "snapshot of 100,000 still copies: " << ms << " ms\n";
-    EXPECT_LT(ms, 5);
+    for (int frame = 1; frame <= 20; ++frame) {
+        const SceneSnapshot next = make_snapshots(bound, bound.sequence().frame(frame)).front();
+        EXPECT_EQ(next.geometry_key, first.geometry_key);
+        EXPECT_EQ(next.instances.shared(), first.instances.shared());
+        EXPECT_EQ(next.fixed_places.shared(), first.fixed_places.shared());
+        EXPECT_EQ(next.motion.headers.shared(), first.motion.headers.shared());
+        EXPECT_EQ(next.instances.own().size() + next.fixed_places.own().size() + next.motion.headers.own().size(), 0u);
+    }
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <rapidcheck/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -180,7 +179,6 @@ TEST_F(Loops, MutatedShotsEndInAShotOrInMessages) {
     constexpr int kRounds = 3000;
     std::mt19937 random(kSeed);
     int shots = 0, refused = 0;
-    const auto begin = std::chrono::steady_clock::now();
     for (int round = 0; round < kRounds; ++round) {
         std::string text = kSeedShot;
         for (unsigned edits = 1 + random() % 4; edits > 0; --edits) text = mutated(text, random);
@@ -194,20 +192,8 @@ TEST_F(Loops, MutatedShotsEndInAShotOrInMessages) {
             FAIL() << "seed " << kSeed << ", round " << round << ": " << error.what() << "\n" << text;
         }
     }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    EXPECT_LT(seconds, 60);  // about 1 ms each; the slack is for sanitizers and loaded machines
     EXPECT_GT(shots, 0);
     EXPECT_GT(refused, kRounds / 2);
-}
-
-TEST_F(Loops, AShotIsReadWithinMilliseconds) {
-    parse_shot_text(kSeedShot, "shot.yaml");
-    const auto begin = std::chrono::steady_clock::now();
-    constexpr int kRuns = 10;
-    for (int i = 0; i < kRuns; ++i) parse_shot_text(kSeedShot, "shot.yaml");
-    const double milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / kRuns;
-    EXPECT_LT(milliseconds, 25);  // half of what `kadr check` has in all; measured below 2 ms in a release build
 }
 
 }  // namespace
