@@ -371,7 +371,8 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
     VertexResult<F> result;
 
     F emission_weight(1.0f);
-    if constexpr ((R & requirement::kEmitters) != 0) emission_weight = emitter_mis<F, R>(scene, path, hit, it, active);
+    if constexpr ((R & requirement::kEmitters) != 0)
+        if (scene.lights.triangle_count > 0) emission_weight = emitter_mis<F, R>(scene, path, hit, it, active);
     const UInt<F> total = path.bounces & UInt<F>(0xffu);
     result.emitted = select(
         active, clamp_contribution(settings, total < UInt<F>(2u), it.emission * path.beta * emission_weight), zero);

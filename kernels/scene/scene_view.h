@@ -61,7 +61,7 @@ struct LightSetOf {
     const EmissiveTriangleOf<T>* triangles;
     const float* triangle_cdf;  ///< [triangle_count + 1], from 0 to 1
     int triangle_count;
-    const T* instance_density;  ///< [instance] luminance / sum(luminance * area): pdf per area of its triangles
+    const T* instance_density;  ///< [instance] luminance / sum(luminance * area): pdf per area of its triangles; unread without any
     T emitted_power;            ///< sum(luminance * area) over all emissive triangles
     Vec3<T> emitter_centre;
     T emitter_radius_squared;
