@@ -74,7 +74,7 @@ static_assert(sizeof(void*) == 8 && sizeof(long) == 8 && sizeof(bool) == 1, "the
 static_assert(sizeof(FilmBeauty) == 32 && sizeof(FilmSurface) == 80 && sizeof(FilmView) == 32,
               "copied to the host's film");
 static_assert(sizeof(LaunchCounters) == 32, "read back by the host");
-static_assert(sizeof(Material) == 212 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
+static_assert(sizeof(Material) == 216 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
                   sizeof(InstanceMotion) == 12 && sizeof(Affine) == 48 && sizeof(TransformKey) == 52 &&
                   sizeof(Light) == 92 && sizeof(CameraKey) == 44 && sizeof(FilterTable) == 2068 &&
                   sizeof(Shutter) == 2072,

@@ -102,7 +102,9 @@ inline constexpr unsigned kEmitters =
 inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shutter is open
 /// Vertex colours, a second set of texture coordinates, partial coverage, unlit materials; never without kMaps.
 inline constexpr unsigned kSpecials = 16;
-inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials;
+inline constexpr unsigned kMirrors = 32;  ///< lobes narrower than kMinAlpha (bsdf/ggx.h), down to deltas; only by `path`
+inline constexpr unsigned kIor = 64;      ///< dielectrics of another index of refraction than 1.5
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials | kMirrors | kIor;
 }  // namespace requirement
 
 }  // namespace kadr::kernels
