@@ -8,12 +8,14 @@ namespace kadr::kernels {
 /// f_r = k_d c / pi + D G F / (4 (n.o)(n.i)), without the cosine.
 ///
 /// D: GGX with alpha = max(roughness^2, 1e-3); G: product of Schlick's G1 with k = alpha / 2; F: Schlick over o.h with
-/// f0 = lerp(0.04, base colour, metallic); k_d = (1 - F)(1 - metallic).
+/// f0 = lerp(dielectric_f0, base colour, metallic); k_d = (1 - F)(1 - metallic). Smoother surfaces than alpha allows are
+/// drawn with that alpha: a preview shows the highlight of a lamp on a mirror, where `path` shows the lamp.
 ///
+/// @param dielectric_f0  Fresnel reflectance at normal incidence; 0.04 where the material names no index of refraction
 /// @param n   unit, turned to the viewer
 /// @param wo  unit, to the viewer;  wi  unit, to the light.  Zero when the light is behind the surface.
 template <class F>
-SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, Vec3<F> n, Vec3<F> wo, Vec3<F> wi) {
+SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, F dielectric_f0, Vec3<F> n, Vec3<F> wo, Vec3<F> wi) {
     const F one(1.0f), zero(0.0f);
     const F n_o = max(dot(n, wo), zero);
     const F n_i = dot(n, wi);
@@ -29,9 +31,8 @@ SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, Vec
     const F k = alpha * F(0.5f);
     const F lobe = F(0.25f) * d / ((n_o * (one - k) + k) * (max(n_i, zero) * (one - k) + k));
     const F fresnel = schlick_weight(h_o);
-    const F f0(0.04f);
     const Vec3<F> white{one, one, one};
-    const Vec3<F> reflectance = lerp(lerp(Vec3<F>{f0, f0, f0}, base_color, metallic), white, fresnel);
+    const Vec3<F> reflectance = lerp(lerp(Vec3<F>{dielectric_f0, dielectric_f0, dielectric_f0}, base_color, metallic), white, fresnel);
     const Vec3<F> value = (white - reflectance) * base_color * ((one - metallic) * F(kInvPi)) + reflectance * lobe;
     return select(Mask<F>(n_i > zero), value, Vec3<F>{zero, zero, zero});
 }

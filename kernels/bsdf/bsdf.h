@@ -1,6 +1,7 @@
 // glTF metallic-roughness: a GGX lobe over a diffuse base. The lobe carries the energy of multiple scattering (Turquin
 // 2019, "Practical multiple scattering compensation for microfacet models"); the base gets what the dielectric lobe
-// lets through. In uniform light a white material reflects all of it, whatever its metallic and roughness.
+// lets through. In uniform light a white material reflects all of it, whatever its metallic and roughness. Fresnel terms
+// are Schlick's, with a reflectance of 1 at grazing angles whatever the index of refraction (KHR_materials_ior).
 //
 // Not reciprocal: both compensations look at the viewer's side alone.
 #pragma once
@@ -9,11 +10,9 @@
 #include "kernels/bsdf/ggx.h"
 #include "kernels/math/gather.h"
 #include "kernels/sampler/warp.h"
+#include "kernels/scene/scene_types.h"
 
 namespace kadr::kernels {
-
-/// Fresnel reflectance of a dielectric of index 1.5 at normal incidence.
-inline constexpr float kDielectricF0 = 0.04f;
 
 /// A material at one point, seen from one side.
 template <class F>
@@ -21,7 +20,7 @@ struct Bsdf {
     Vec3<F> f0;              ///< Fresnel reflectance at normal incidence
     Vec3<F> diffuse;         ///< albedo of the base as seen through the lobe
     Vec3<F> specular_scale;  ///< makes the lobe's albedo that of all scattering orders; >= 1
-    F alpha;                 ///< GGX width
+    F alpha;                 ///< GGX width; 0: the lobe is a delta in the mirror direction
     F specular_probability;  ///< share of the samples that go to the lobe
 };
 
@@ -35,7 +34,7 @@ template <class F>
 struct BsdfSample {
     Vec3<F> wi;      ///< unit length, local frame
     Vec3<F> weight;  ///< f cos / pdf of the whole mixture; 0: no sample
-    F pdf;
+    F pdf;           ///< 0 in the mirror direction of a delta, which no other way of sampling finds
     Mask<F> glossy;  ///< drawn from the lobe
 };
 
@@ -49,10 +48,20 @@ SHARED_FN F table_bilinear(const float* t, Int<F> at, F fx, F fy) {
 }
 
 /// Albedos of the lobe: `white` with a Fresnel term of 1, `schlick` with (1 - h.o)^5.
-template <class F>
+///
+/// Lobes narrower than the table's first row mask themselves like it under a cosine that is as much larger as their alpha
+/// is smaller: masking depends on alpha tan(theta). h.o exceeds the cosine in proportion to alpha. Within 1e-6 and 2e-3
+/// of quadrature; a delta's albedos are 1 and its Fresnel term.
+template <bool kMirrors = false, class F>
 SHARED_FN void lobe_albedo(F cos_o, F roughness, F& white, F& schlick) {
     constexpr int n = kAlbedoTableSize;
-    const F x = sqrt(sqrt(saturate(cos_o))) * F(static_cast<float>(n - 1));
+    F cosine = saturate(cos_o), ratio(1.0f);
+    [[maybe_unused]] const F alpha = ggx_alpha<kMirrors>(roughness);
+    if constexpr (kMirrors) {
+        ratio = min(alpha * F(1.0f / kMinAlpha), F(1.0f));
+        cosine = select(alpha < F(kMinAlpha), saturate(cos_o / max(ratio, F(1e-10f))), cosine);
+    }
+    const F x = sqrt(sqrt(cosine)) * F(static_cast<float>(n - 1));
     const F y =
         max((sqrt(saturate(roughness)) - F(kAlbedoTableStart)) * F((n - 1) / (1.0f - kAlbedoTableStart)), F(0.0f));
     const Int<F> i = clamp_index<F>(truncate(x), 0, n - 2);
@@ -60,6 +69,11 @@ SHARED_FN void lobe_albedo(F cos_o, F roughness, F& white, F& schlick) {
     const Int<F> at = j * Int<F>(n) + i;
     white = table_bilinear(kAlbedoWhite, at, x - F(i), y - F(j));
     schlick = table_bilinear(kAlbedoSchlick, at, x - F(i), y - F(j));
+    if constexpr (kMirrors) {
+        const F excess = (white * schlick_weight(cosine) - schlick) * ratio;
+        white = select(alpha > F(0.0f), white, F(1.0f));
+        schlick = select(alpha < F(kMinAlpha), white * schlick_weight(cos_o) - excess, schlick);
+    }
 }
 
 /// Albedos of the lobe for Fresnel reflectances f0 (and f90 = 1), of one scattering order and of all.
@@ -72,17 +86,19 @@ SHARED_FN F compensated_albedo(F f0, F white, F schlick, F missing) {
     return single_albedo(f0, white, schlick) * (F(1.0f) + f0 * missing);
 }
 
+/// @tparam kMirrors  lobes narrower than kMinAlpha are as narrow as they should be; elsewhere the same to the last bit
 /// @param base_color, metallic, roughness  in [0, 1]
 /// @param cos_o  cosine between the shading normal and the viewer, > 0
-template <class F>
-SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o) {
-    const F one(1.0f), tiny = least_divisor<F>(1e-20f), f0(kDielectricF0);
+/// @param f0     Fresnel reflectance of the dielectric at normal incidence, in [0, 1]
+template <bool kMirrors = false, class F>
+SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o, F f0 = F(kDielectricF0)) {
+    const F one(1.0f), tiny = least_divisor<F>(1e-20f);
     F white, schlick;
-    lobe_albedo(cos_o, roughness, white, schlick);
+    lobe_albedo<kMirrors>(cos_o, roughness, white, schlick);
     const F missing = (one - white) / white;
     const F dielectric = compensated_albedo(f0, white, schlick, missing);
     Bsdf<F> b;
-    b.alpha = ggx_alpha(roughness);
+    b.alpha = ggx_alpha<kMirrors>(roughness);
     b.diffuse = base_color * ((one - metallic) * (one - dielectric));
     Vec3<F> specular{dielectric, dielectric, dielectric};
     b.f0 = {f0, f0, f0};
@@ -109,8 +125,9 @@ SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o
     return b;
 }
 
-/// Value and density of a direction of light. Local frame, wo.z > 0; zero for light from below the horizon.
-template <class F>
+/// Value and density of a direction of light. Local frame, wo.z > 0; zero for light from below the horizon. A delta has
+/// neither: there it is the base alone.
+template <bool kMirrors = false, class F>
 SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
     const F zero(0.0f), one(1.0f);
     const Vec3<F> sum = wo + wi;
@@ -124,7 +141,9 @@ SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
     // G1 = 2 cos_o / (cos_o + root_o). Both over one common denominator.
     const F masking = wi.z * root_o + wo.z * root_i;
     const F visible = wo.z + root_o;
-    const F common = F(0.5f * kInvPi) * alpha2 / max(t * t * masking * visible, least_divisor<F>(1e-34f));
+    F least = least_divisor<F>(1e-34f);
+    if constexpr (kMirrors) least = select(b.alpha < F(kMinAlpha), least_divisor<F>(1e-37f), least);
+    const F common = F(0.5f * kInvPi) * alpha2 / max(t * t * masking * visible, least);
     const F lobe = common * wi.z * visible;
     const F lobe_pdf = common * masking;
     const F fresnel = schlick_weight(F(0.5f) * sqrt(sum2));  // |wo + wi| = 2 cos of the half angle
@@ -139,7 +158,7 @@ SHARED_FN BsdfValue<F> evaluate_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec3<F> wi) {
 /// A direction of light, drawn from one lobe and weighed with the density of both.
 ///
 /// @param u_lobe  chooses the lobe
-template <class F>
+template <bool kMirrors = false, class F>
 SHARED_FN BsdfSample<F> sample_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec2<F> u, F u_lobe) {
     BsdfSample<F> result;
     result.glossy = u_lobe < b.specular_probability;
@@ -150,10 +169,17 @@ SHARED_FN BsdfSample<F> sample_bsdf(const Bsdf<F>& b, Vec3<F> wo, Vec2<F> u, F u
     const Vec3<F> h = sample_visible_normal(wo, b.alpha, s, c, u.y);
     const Vec3<F> reflected = h * (F(2.0f) * dot(h, wo)) - wo;
     result.wi = select(result.glossy, reflected, diffuse);
-    const BsdfValue<F> value = evaluate_bsdf(b, wo, result.wi);
+    const BsdfValue<F> value = evaluate_bsdf<kMirrors>(b, wo, result.wi);
     const Mask<F> valid = value.pdf > F(0.0f);
     result.weight = value.f_cos * (F(1.0f) / select(valid, value.pdf, F(1.0f)));  // f_cos is 0 where the density is
     result.pdf = value.pdf;
+    if constexpr (kMirrors) {
+        const Mask<F> mirrored = result.glossy & (b.alpha == F(0.0f));
+        const Vec3<F> reflectance = lerp(b.f0, Vec3<F>{F(1.0f), F(1.0f), F(1.0f)}, schlick_weight(wo.z));
+        result.wi = select(mirrored, Vec3<F>{-wo.x, -wo.y, wo.z}, result.wi);
+        result.weight = select(mirrored, reflectance * b.specular_scale * (F(1.0f) / b.specular_probability), result.weight);
+        result.pdf = select(mirrored, F(0.0f), result.pdf);
+    }
     return result;
 }
 

@@ -22,9 +22,9 @@ constexpr EntryPoint entry_point(IntegratorKind integrator) {
 }
 
 /// The set to compile a kernel for, of what a scene requires: all of it, but for `direct`, which has a constant
-/// background and meets no lights.
+/// background, meets no lights and has no narrower lobes than kMinAlpha.
 constexpr unsigned kernel_requirements(IntegratorKind integrator, unsigned required) {
-    return integrator == IntegratorKind::direct ? required & ~requirement::kEmitters : required;
+    return integrator == IntegratorKind::direct ? required & ~(requirement::kEmitters | requirement::kMirrors) : required;
 }
 
 /// The functions that rays ask about geometry of a type, by name as in hiprtFuncNameSet; null: none.

@@ -20,18 +20,26 @@ struct SampleResult {
     bool met_surface = false;  ///< depth and motion are those of a surface
 };
 
+SHARED_FN bool has_layers(const FilmView& film) { return film.albedo || film.normal || film.hits; }
+
 template <class T>
-SHARED_FN void add_surface(const SampleResult<T>& s, FilmSurface& sums) {
-    const T albedo[3] = {s.albedo.x, s.albedo.y, s.albedo.z}, normal[3] = {s.normal.x, s.normal.y, s.normal.z};
-    for (int c = 0; c < 3; ++c) {
-        sums.albedo[c] += albedo[c] * s.light;
-        sums.normal[c] += normal[c] * s.light;
+SHARED_FN void add_vector(FilmVector& sum, Vec3<T> value, T light) {
+    sum.x += value.x * light;
+    sum.y += value.y * light;
+    sum.z += value.z * light;
+}
+
+template <class T>
+SHARED_FN void add_surface(const FilmView& film, unsigned long pixel, const SampleResult<T>& s) {
+    if (film.albedo) add_vector(film.albedo[pixel], s.albedo, s.light);
+    if (film.normal) add_vector(film.normal[pixel], s.normal, s.light);
+    if (film.motion) {
+        film.motion[pixel].x += s.motion.x * s.light;
+        film.motion[pixel].y += s.motion.y * s.light;
     }
-    sums.motion[0] += s.motion.x * s.light;
-    sums.motion[1] += s.motion.y * s.light;
     if (!s.met_surface || !is_finite(s.depth)) return;
-    sums.depth += s.depth * s.light;
-    sums.depth_weight += s.light;
+    if (film.depth) film.depth[pixel] += s.depth * s.light;
+    if (film.hits) film.hits[pixel] += s.light;
 }
 
 /// @return false: the sample is not finite, and was not added
@@ -47,7 +55,7 @@ SHARED_FN bool add_sample(const FilmView& film, unsigned long pixel, const Sampl
     beauty.g += s.radiance.y * w;
     beauty.b += s.radiance.z * w;
     beauty.alpha += s.alpha * w;
-    if (film.surface) add_surface(s, film.surface[pixel]);
+    add_surface(film, pixel, s);
     return true;
 }
 

@@ -16,21 +16,24 @@ struct FilmBeauty {
     double r, g, b, alpha;
 };
 
-/// A pixel's sums of the data layers, over both halves; depth and motion over the samples that met a surface, whose
-/// weight is depth_weight.
-struct FilmSurface {
-    double albedo[3], normal[3];
-    double depth, depth_weight;
-    double motion[2];
+/// A pixel's sums of a data layer: of colours and directions, and of what moves in the picture.
+struct FilmVector {
+    double x, y, z;
+};
+struct FilmMotion {
+    double x, y;
 };
 
 /// The film as it lies on the device, [y][x] of the whole image: one half's sums, and the layers, which the halves
-/// share.
+/// share. Null: not wanted.
 struct FilmView {
     FilmBeauty* beauty;
-    unsigned* samples;     ///< kept samples of the half
-    double* weights;       ///< sums of the samples' shares of the light; null: the film is not weighted
-    FilmSurface* surface;  ///< null: no data layers
+    unsigned* samples;  ///< kept samples of the half
+    double* weights;    ///< sums of the samples' shares of the light; null: the film is not weighted
+    FilmVector *albedo, *normal;
+    double* depth;       ///< over the samples that met a surface
+    double* hits;        ///< their weight; wanted with depth and with motion
+    FilmMotion* motion;  ///< over the samples that met a surface
 };
 
 /// Sums over all launches since the host cleared them.
@@ -71,16 +74,16 @@ inline constexpr unsigned kCount = 2;
 }  // namespace geometry_type
 
 static_assert(sizeof(void*) == 8 && sizeof(long) == 8 && sizeof(bool) == 1, "the widths that host and device share");
-static_assert(sizeof(FilmBeauty) == 32 && sizeof(FilmSurface) == 80 && sizeof(FilmView) == 32,
+static_assert(sizeof(FilmBeauty) == 32 && sizeof(FilmVector) == 24 && sizeof(FilmMotion) == 16 && sizeof(FilmView) == 64,
               "copied to the host's film");
 static_assert(sizeof(LaunchCounters) == 32, "read back by the host");
-static_assert(sizeof(Material) == 212 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
+static_assert(sizeof(Material) == 216 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
                   sizeof(InstanceMotion) == 12 && sizeof(Affine) == 48 && sizeof(TransformKey) == 52 &&
                   sizeof(Light) == 92 && sizeof(CameraKey) == 44 && sizeof(FilterTable) == 2068 &&
                   sizeof(Shutter) == 2072,
               "elements of the tables that the host uploads as they are");
 static_assert(sizeof(EnvironmentMap) == 56 && sizeof(LightSet) == 160 && sizeof(Camera) == 32 &&
-                  sizeof(Settings) == 44 && sizeof(SceneView) == 336 && sizeof(LaunchParams) == 464,
+                  sizeof(Settings) == 44 && sizeof(SceneView) == 336 && sizeof(LaunchParams) == 496,
               "the kernel's argument");
 
 }  // namespace kadr::kernels

@@ -118,7 +118,7 @@ private:
     /// Coverage and data layers of the first hit.
     SHARED_FN void add_layers(const Hit<T>& hit, Vec3<T> albedo, Vec3<T> normal) {
         result_.alpha = 1.0f;
-        if (!params_.film.surface) return;
+        if (!has_layers(params_.film)) return;
         result_.met_surface = true;
         result_.albedo = albedo;
         result_.normal = normal;

@@ -23,6 +23,7 @@ struct Interaction {
     Vec3<F> geometric_normal, shading_normal;
     Vec3<F> base_color, emission;
     F metallic, roughness;
+    F dielectric_f0;  ///< Fresnel reflectance of its dielectric part at normal incidence
     F alpha;  ///< coverage of a `blend` material; 1 elsewhere
     Mask<F> unlit;
 };
@@ -253,6 +254,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
     SurfaceMaps<F> maps;
     Interaction<F> it;
     it.alpha = F(1.0f);
+    it.dielectric_f0 = F(kDielectricF0);
     it.unlit = Mask<F>(false);
     const int some = lowest_bit(bits(active));  // inactive lanes shade what this one hit, and are masked out later
     for (int i = 0; i < kLanes<F>; ++i) {
@@ -269,6 +271,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
         }
         for (int c = 0; c < 3; ++c) rows[c][i] = &g.vertices[keys.first + index[c]].position.x;
         rows[3][i] = &scene.materials[instance.material].base_color.x;
+        if constexpr ((R & requirement::kIor) != 0) set_lane(it.dielectric_f0, i, scene.materials[instance.material].dielectric_f0);
         if constexpr (kTransforms) {
             const AffineOf<Real<F>> at = transform_at(scene, instance_index, lane(time, from));
             for (int r = 0; r < 3; ++r)

@@ -35,6 +35,9 @@ struct TextureSlot {
 
 enum class AlphaMode : unsigned char { opaque, mask, blend };
 
+/// Fresnel reflectance of a dielectric of index 1.5 at normal incidence: that of materials without KHR_materials_ior.
+inline constexpr float kDielectricF0 = 0.04f;
+
 /// glTF metallic-roughness material.
 struct Material {
     // The first eight floats are fetched together (see load_rows in math/wide.h): keep their order.
@@ -42,6 +45,7 @@ struct Material {
     float metallic = 1;
     Vec3f emission{0, 0, 0};  ///< radiance: emissiveFactor * emissiveStrength
     float roughness = 1;      ///< perceptual; alpha_ggx = roughness^2
+    float dielectric_f0 = kDielectricF0;  ///< ((ior - 1) / (ior + 1))^2
     float alpha = 1;
     float alpha_cutoff = 0.5f;
     float normal_scale = 1;

@@ -61,7 +61,7 @@ struct LightSetOf {
     const EmissiveTriangleOf<T>* triangles;
     const float* triangle_cdf;  ///< [triangle_count + 1], from 0 to 1
     int triangle_count;
-    const T* instance_density;  ///< [instance] luminance / sum(luminance * area): pdf per area of its triangles
+    const T* instance_density;  ///< [instance] luminance / sum(luminance * area): pdf per area of its triangles; unread without any
     T emitted_power;            ///< sum(luminance * area) over all emissive triangles
     Vec3<T> emitter_centre;
     T emitter_radius_squared;
@@ -102,7 +102,9 @@ inline constexpr unsigned kEmitters =
 inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shutter is open
 /// Vertex colours, a second set of texture coordinates, partial coverage, unlit materials; never without kMaps.
 inline constexpr unsigned kSpecials = 16;
-inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials;
+inline constexpr unsigned kMirrors = 32;  ///< lobes narrower than kMinAlpha (bsdf/ggx.h), down to deltas; only by `path`
+inline constexpr unsigned kIor = 64;      ///< dielectrics of another index of refraction than 1.5
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials | kMirrors | kIor;
 }  // namespace requirement
 
 }  // namespace kadr::kernels

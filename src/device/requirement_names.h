@@ -20,6 +20,8 @@ inline constexpr RequirementName kRequirementNames[] = {
     {kernels::requirement::kDeformation, "deformation", "meshes that bend while the shutter is open"},
     {kernels::requirement::kSpecials, "specials",
      "vertex colours, a second set of texture coordinates, partial coverage, unlit materials"},
+    {kernels::requirement::kMirrors, "mirrors", "surfaces smoother than roughness 0.032"},
+    {kernels::requirement::kIor, "ior", "dielectrics of another index of refraction than 1.5"},
 };
 
 /// "maps emitters"; "nothing" for an empty set.

@@ -193,20 +193,43 @@ WindowSums window_sums(const std::vector<double>& values, int width, int height,
     return result;
 }
 
-std::vector<float> standard_errors(const Film& film) {
-    constexpr int kRadius = 3;
+void StandardErrors::sum_row(int y) {
+    const auto width = static_cast<std::size_t>(film_.width());
     std::vector<double> noise, known;
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) {
-            const std::optional<Pair> p = pair_of(film, x, y);
-            noise.push_back(p ? luminance_noise(*p) : 0);
-            known.push_back(p ? 1 : 0);
+    for (int x = 0; x < film_.width(); ++x) {
+        const std::optional<Pair> p = pair_of(film_, x, y);
+        noise.push_back(p ? luminance_noise(*p) : 0);
+        known.push_back(p ? 1 : 0);
+    }
+    Row& row = rows_[static_cast<std::size_t>(y) % kRows];
+    row = {};
+    for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t begin = x - std::min<std::size_t>(x, kRadius), end = std::min(width, x + kRadius + 1);
+        row.noise.push_back(sum_of_row(noise, begin, end));
+        row.known.push_back(sum_of_row(known, begin, end));
+    }
+}
+
+void StandardErrors::move_to(int y) {
+    for (; next_ <= std::min(film_.height() - 1, y + kRadius); ++next_) sum_row(next_);
+    errors_.clear();
+    for (std::size_t x = 0; x < static_cast<std::size_t>(film_.width()); ++x) {
+        double noise = 0, known = 0;
+        for (int row = std::max(0, y - kRadius); row <= std::min(film_.height() - 1, y + kRadius); ++row) {
+            noise += rows_[static_cast<std::size_t>(row) % kRows].noise[x];
+            known += rows_[static_cast<std::size_t>(row) % kRows].known[x];
         }
-    const WindowSums sums = window_sums(noise, film.width(), film.height(), kRadius),
-                     counts = window_sums(known, film.width(), film.height(), kRadius);
+        errors_.push_back(known > 0 ? static_cast<float>(std::sqrt(noise / known)) : 0.0f);
+    }
+}
+
+std::vector<float> standard_errors(const Film& film) {
+    StandardErrors rows(film);
     std::vector<float> errors;
-    for (std::size_t i = 0; i < noise.size(); ++i)
-        errors.push_back(counts.sums[i] > 0 ? static_cast<float>(std::sqrt(sums.sums[i] / counts.sums[i])) : 0.0f);
+    for (int y = 0; y < film.height(); ++y) {
+        rows.move_to(y);
+        for (int x = 0; x < film.width(); ++x) errors.push_back(rows.at(x));
+    }
     return errors;
 }
 

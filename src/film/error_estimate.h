@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -34,8 +35,29 @@ struct ErrorEstimate {
 /// @param scale  of radiance in the picture over that in the film (physical exposure)
 ErrorEstimate estimate_error(const Film& film, double scale = 1);
 
-/// Standard error of the luminance of every pixel, [y][x]: the root of the mean over 7 x 7 pixels (one pair of halves
+/// Standard error of the luminance of every pixel, row by row: the root of the mean over 7 x 7 pixels (one pair of halves
 /// says little). Infinite where a sum overflowed, 0 where nothing is known.
+class StandardErrors {
+public:
+    explicit StandardErrors(const Film& film) : film_(film) {}
+    /// To a row of the film, from the top one on; rows above it are not read again.
+    void move_to(int y);
+    float at(int x) const { return errors_[static_cast<std::size_t>(x)]; }
+
+private:
+    static constexpr int kRadius = 3, kRows = 2 * kRadius + 1;
+    /// Sums over 2 kRadius + 1 pixels of a row: of the noise, and of the pixels of which it is known.
+    struct Row {
+        std::vector<double> noise, known;
+    };
+    void sum_row(int y);
+
+    const Film& film_;
+    int next_ = 0;
+    std::array<Row, kRows> rows_;  ///< those around the row at hand, by their number modulo kRows
+    std::vector<float> errors_;
+};
+/// Of all of them, [y][x].
 std::vector<float> standard_errors(const Film& film);
 
 /// Sums over squares of 2 `radius` + 1 pixels, clipped at the borders, and the number of pixels in each.

@@ -56,6 +56,7 @@ void Factors::set(const DrivenProperty& driven, double time_s, double clip_offse
         case Property::roughness: return replace(material.roughness);
         case Property::emissive: source.emissive = value(source.emissive); return;
         case Property::emissive_strength: source.emissive_strength = value(source.emissive_strength); return;
+        case Property::ior: source.ior = value(source.ior); return;
         case Property::alpha_cutoff: return replace(material.alpha_cutoff);
         case Property::normal_scale: return replace(material.normal_scale);
         case Property::occlusion_strength: return replace(material.occlusion_strength);
@@ -70,6 +71,7 @@ kernels::Material Factors::made() const {
     kernels::Material result = material;
     const glm::dvec3 emission = source.emissive * source.emissive_strength;
     result.emission = {static_cast<float>(emission.x), static_cast<float>(emission.y), static_cast<float>(emission.z)};
+    result.dielectric_f0 = dielectric_f0(source.ior);
     kernels::TextureSlot* const slots[] = {&result.base_color_texture, &result.metallic_roughness_texture, &result.normal_texture,
                                            &result.emissive_texture, &result.occlusion_texture};
     for (std::size_t use = 0; use < std::size(slots); ++use) *slots[use] = transformed(*slots[use], source.transforms[use]);
@@ -88,6 +90,7 @@ void drive_all(std::vector<DrivenProperty>& all, const MaterialSpec& spec) {
     drive(all, Property::base_color, spec.base_color);
     drive(all, Property::metallic, spec.metallic);
     drive(all, Property::roughness, spec.roughness);
+    drive(all, Property::ior, spec.ior);
     drive(all, Property::emissive, spec.emissive);
     drive(all, Property::emissive_strength, spec.emissive_strength);
     drive(all, Property::alpha, spec.alpha);
@@ -111,7 +114,7 @@ bool factors_spread(const Materials& at) {
     constexpr double kFactor = 1.0 / 8;
     for (const auto channel : kChannels)
         if (spreads(each(at, [channel](const M& m) { return m.base_color.*channel; }), kFactor)) return true;
-    for (const auto factor : {&M::alpha, &M::metallic, &M::roughness, &M::alpha_cutoff, &M::normal_scale})
+    for (const auto factor : {&M::alpha, &M::metallic, &M::roughness, &M::dielectric_f0, &M::alpha_cutoff, &M::normal_scale})
         if (spreads(each(at, [factor](const M& m) { return m.*factor; }), kFactor)) return true;
     return false;
 }

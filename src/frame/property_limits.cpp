@@ -32,6 +32,7 @@ constexpr Row kRows[] = {
     {Property::roughness, {0, 1}, "roughness"},
     {Property::emissive, {0, kUnbounded}, "emissive colour"},
     {Property::emissive_strength, {0, kUnbounded}, "emissive strength"},
+    {Property::ior, {1, kUnbounded}, "index of refraction"},
     {Property::alpha_cutoff, {0, kUnbounded}, "alpha cutoff"},
     {Property::occlusion_strength, {0, 1}, "occlusion strength"},
     {Property::light_color, {0, kUnbounded}, "colour"},

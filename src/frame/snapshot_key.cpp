@@ -29,9 +29,9 @@ public:
         (*this)(texture, uv_set, m00, m01, m02, m10, m11, m12);
     }
     void add(const kernels::Material& material) {
-        const auto& [base_color, metallic, emission, roughness, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit, color_map,
-                     roughness_map, normal_map, emissive_map, occlusion_map] = material;
-        (*this)(base_color, metallic, emission, roughness, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit, color_map,
+        const auto& [base_color, metallic, emission, roughness, dielectric_f0, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit,
+                     color_map, roughness_map, normal_map, emissive_map, occlusion_map] = material;
+        (*this)(base_color, metallic, emission, roughness, dielectric_f0, alpha, cutoff, normal_scale, occlusion, mode, double_sided, unlit, color_map,
                 roughness_map, normal_map, emissive_map, occlusion_map);
     }
     void add(const kernels::Camera& camera) {

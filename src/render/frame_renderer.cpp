@@ -89,11 +89,24 @@ FilmLayers film_layers(const std::vector<Aov>& aovs) {
     return layers;
 }
 
-Film& FrameRenderer::cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted) {
-    const bool fits = film_ && film_->width() == image.width && film_->height() == image.height && film_->layers() == layers;
-    if (!fits) film_.emplace(image.width, image.height, layers);
-    film_->clear(weighted);
+Film& FrameRenderer::cleared_film(const Shot& shot, const FilmLayers& layers, int halves, bool weighted) {
+    const int width = shot.image.width, height = shot.image.height;
+    const bool fits = film_ && film_->width() == width && film_->height() == height && film_->layers() == layers && film_->halves() == halves;
+    if (fits) {
+        film_->clear(weighted);
+    } else {
+        film_.reset();  // before there are two
+        film_.emplace(width, height, layers, halves, weighted);
+    }
     return *film_;
+}
+
+Image FrameRenderer::developed() {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(film_->width()) * static_cast<std::uint64_t>(film_->height());
+    if (pixels * Film::bytes_per_pixel(film_->layers(), film_->halves(), film_->weighted()) <= kMostFilmKept) return film_->develop();
+    Image image = Film::develop(std::move(*film_));
+    film_.reset();
+    return image;
 }
 
 /// The rounds of samples of one frame.
@@ -189,7 +202,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
 
     const bool steered = spec.max_error || std::isfinite(budget_s);
     const std::vector<SampleRange> all = deal_samples(weights_of(parts), spec.samples);
-    Film& film = cleared_film(shot.shot().image, layers_to_render(request.layers, spec), needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
+    Film& film = cleared_film(shot.shot(), layers_to_render(request.layers, spec), film_halves(spec, parts.size()), needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
     Rounds rounds(*device_, film, parts, frame);
     for (int count = 0, first = 0; (count = steering.next_round(film)) > 0; first += count) {
         const double before = steered ? static_cast<double>(first) / spec.samples : 0, part = static_cast<double>(count) / (steered ? spec.samples : count);
@@ -199,7 +212,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
     }
     rounds.gather();
     frame.sampling = report_sampling(film, steering.stopped_by(), view, scale);
-    frame.image = film.develop();
+    frame.image = developed();
     scale_depth(frame.image, parts.front().unit_m);
     denoise(frame.image, request.layers, spec);
     expose(frame.image, scale);

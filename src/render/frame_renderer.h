@@ -38,7 +38,7 @@ FilmLayers film_layers(const std::vector<Aov>& aovs);
 /// Adds the counters of one part of the work to those of the whole.
 void add(DeviceStatistics& sum, const DeviceStatistics& part);
 
-/// Renders frames of bound shots on one device, one after another; keeps the film between frames.
+/// Renders frames of bound shots on one device, one after another; keeps a film of moderate size between frames.
 class FrameRenderer {
 public:
     /// @param clock  seconds since some moment, for time budgets; absent: the system's steady clock
@@ -51,7 +51,8 @@ public:
 
 private:
     class Rounds;
-    Film& cleared_film(const ImageSpec& image, const FilmLayers& layers, bool weighted);
+    Film& cleared_film(const Shot& shot, const FilmLayers& layers, int halves, bool weighted);
+    Image developed();
 
     Device* device_;
     std::function<double()> clock_;

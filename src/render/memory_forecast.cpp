@@ -9,13 +9,10 @@
 #include <fmt/format.h>
 
 #include "device/embree/memory_forecast.h"
-#include "film/film.h"
 #include "kernels/scene/scene_view.h"
 #include "output/image_io.h"
-#include "render/denoising.h"
 #include "render/frame_cache.h"
-#include "render/frame_identity.h"
-#include "render/frame_renderer.h"
+#include "render/frame_memory.h"
 
 namespace kadr {
 namespace {
@@ -91,36 +88,6 @@ double bytes_of_emitters(const Scene& scene, const SceneSnapshot& snapshot) {
         if (instance.mask != 0 && !m.unlit && m.emission.x + m.emission.y + m.emission.z > 0) triangles += static_cast<double>(scene.geometries[instance.geometry].indices.size()) / 3;
     }
     return triangles * (kEntry + kMaking);
-}
-
-/// Bytes a pixel of the film and of what is made of it.
-struct FilmBytes {
-    double sums = 0;        ///< while rays are traced
-    double image = 0;       ///< a finished frame
-    double estimating = 0;  ///< both halves as they are shown, for the noise: two pictures, and one half
-    double writing = 0;     ///< the picture in its file's format, encoded
-    double encoding = 0;    ///< the picture read back for the video
-};
-
-/// The picture as the library takes it, and the file in memory: beauty in halves, layers in floats. Measured at 1920 x 1080
-/// and 3840 x 2160: 22 bytes a pixel without layers, 127 with ten channels of them.
-double exr_bytes(double channels) { return channels * sizeof(float) + 1.25 * (4 * sizeof(std::uint16_t) + (channels - 4) * sizeof(float)); }
-/// Three values and the file; measured at 3840 x 2160: 4.3 bytes a pixel of eight bits.
-double png_bytes(int bits) { return bits == 16 ? 9 : 4.3; }
-
-FilmBytes film_bytes(const Shot& shot, const std::vector<SceneSnapshot>& parts) {
-    const FilmLayers layers = layers_to_render(film_layers(shot.output.aovs), shot.render);
-    const bool weighted = parts.size() > 1 || !parts.front().shutter.plain;
-    constexpr double kColor = 4 * sizeof(float), kShown = 3 * sizeof(float);
-    const double channels = 4 + 3 * layers.albedo + 3 * layers.normal + layers.depth + 2 * layers.motion + layers.samples + layers.error;
-    FilmBytes bytes;
-    bytes.sums = Film::kHalves * (sizeof(Film::Beauty) + sizeof(std::uint32_t) + (weighted ? sizeof(float) : 0)) + (layers.any_surface() ? sizeof(Film::Surface) : 0);
-    bytes.image = channels * sizeof(float);
-    if (shot.render.samples > 1) bytes.estimating = 2 * kShown + kColor;
-    for (const std::string& pattern : shot.output.frames)
-        bytes.writing = std::max(bytes.writing, is_linear_file(pattern) ? exr_bytes(channels) : kShown + png_bytes(shot.output.png_bits));
-    if (shot.output.video) bytes.encoding = kShown + kShown;
-    return bytes;
 }
 
 /// What wakes up when the program works: more of its libraries, stacks, heaps, queues of paths. Measured as the peak of a
@@ -203,12 +170,11 @@ private:
 
     void add_film() {
         const Shot& shot = shot_.shot();
-        const FilmBytes each = film_bytes(shot, parts_);
-        const double pixels = static_cast<double>(shot.image.width) * shot.image.height;
-        add("film", fmt::format("{} x {} pixels", shot.image.width, shot.image.height), {0, pixels * each.sums, pixels * each.sums, pixels * (each.sums + std::max(each.estimating, each.image + each.writing))});
-        const double cached = std::min<double>(extent_.frames - 1, std::max(1.0, std::floor(static_cast<double>(kMostCachedBytes) / (pixels * each.image))));
-        add("frames", fmt::format("{:.0f} kept in case they come again{}", cached, each.encoding > 0 ? ", one on its way into the video" : ""),
-            {0, 0, 0, pixels * (cached * each.image + each.encoding)});
+        const FrameBytes frame = frame_bytes(shot, parts_.size(), parts_.size() > 1 || !parts_.front().shutter.plain);
+        add("film", fmt::format("{} x {} pixels", shot.image.width, shot.image.height), {0, frame.sums, frame.sums, frame.finishing()});
+        const double cached = std::min<double>(extent_.frames - 1, std::max(1.0, std::floor(static_cast<double>(kMostCachedBytes) / frame.image)));
+        add("frames", fmt::format("{:.0f} kept in case they come again{}", cached, frame.encoding > 0 ? ", one on its way into the video" : ""),
+            {0, 0, 0, cached * frame.image + frame.encoding});
     }
 
     MemoryForecast at_the_peak() const {

@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "device/tables/least_green.h"
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
+#include "kernels/bsdf/ggx.h"
 #include "render/denoising.h"
 #include "render/track_list.h"
 
@@ -34,7 +36,9 @@ constexpr FeatureInfo kFeatures[] = {
     {Feature::vertex_colors, "geometry", "vertex colours", "meshes"},
     {Feature::second_uv_set, "geometry", "second texture coordinates", "meshes"},
     {Feature::dielectric, "materials", "dielectric", "materials"},
+    {Feature::index_of_refraction, "materials", "index of refraction", "materials"},
     {Feature::metallic, "materials", "metallic", "materials"},
+    {Feature::mirror, "materials", "smoother than roughness 0.032", "materials"},
     {Feature::unlit, "materials", "unlit", "materials"},
     {Feature::alpha_mask, "materials", "alpha mask", "materials"},
     {Feature::alpha_blend, "materials", "alpha blend", "materials"},
@@ -268,6 +272,13 @@ private:
         }
     }
 
+    /// At some point of it.
+    bool is_mirror(const kernels::Material& m) const {
+        const int texture = m.metallic_roughness_texture.texture;
+        const float roughness = texture < 0 ? m.roughness : m.roughness * least_green(shot_.scene().textures[index(texture)]);
+        return roughness * roughness < kernels::kMinAlpha;
+    }
+
     void add_looks(const kernels::Material& m, bool emits, const std::string& name) {
         if (m.alpha_mode == kernels::AlphaMode::mask) askers_.add(Feature::alpha_mask, name);
         if (m.alpha_mode == kernels::AlphaMode::blend) askers_.add(Feature::alpha_blend, name);
@@ -275,7 +286,9 @@ private:
         if (m.unlit) return askers_.add(Feature::unlit, name);
         const bool textured = m.metallic_roughness_texture.texture >= 0;
         if (m.metallic < 1 || textured) askers_.add(Feature::dielectric, name);
+        if (m.dielectric_f0 != kernels::kDielectricF0) askers_.add(Feature::index_of_refraction, name);
         if (m.metallic > 0) askers_.add(Feature::metallic, name);
+        if (shot_.shot().render.integrator == Integrator::path && is_mirror(m)) askers_.add(Feature::mirror, name);
         if (textured) askers_.add(Feature::texture_metallic_roughness, name);
         if (m.normal_texture.texture >= 0) askers_.add(Feature::texture_normal, name);
         if (emits && m.emissive_texture.texture >= 0) askers_.add(Feature::texture_emissive, name);

@@ -15,11 +15,11 @@ constexpr int kWindowRadius = 3;
 constexpr int kTimingRound = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One half as a picture: linear R, G, B, A.
-Image half_of(const Film& film, int half, double scale) {
-    Image image{film.width(), film.height(), {"R", "G", "B", "A"}, {}};
-    image.pixels.reserve(4 * static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()));
-    for (int y = 0; y < film.height(); ++y)
+/// Rows of one half as a picture: linear R, G, B, A.
+Image half_of(const Film& film, int half, int y0, int y1, double scale) {
+    Image image{film.width(), y1 - y0, {"R", "G", "B", "A"}, {}};
+    image.pixels.reserve(4 * static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(y1 - y0));
+    for (int y = y0; y < y1; ++y)
         for (int x = 0; x < film.width(); ++x) {
             const double n = film.divisor(x, y, half);
             const Film::Color color = n > 0 ? film.mean(x, y, half) : Film::Color{0, 0, 0};
@@ -49,13 +49,16 @@ const char* name_of(SamplingStop stop) {
     return kNames[static_cast<std::size_t>(stop)];
 }
 
-std::vector<double> display_noise(const Film& film, const ViewSpec& view, double scale) {
-    const Image a = apply_view(half_of(film, 0, scale), view, false),
-                b = apply_view(half_of(film, 1, scale), view, false);
+namespace {
+
+/// display_noise of rows [y0, y1).
+std::vector<double> noise_of_rows(const Film& film, int y0, int y1, const ViewSpec& view, double scale) {
+    const Image a = apply_view(half_of(film, 0, y0, y1, scale), view, false),
+                b = apply_view(half_of(film, 1, y0, y1, scale), view, false);
     std::vector<double> noise;
     noise.reserve(a.pixels.size() / 3);
     std::size_t i = 0;
-    for (int y = 0; y < film.height(); ++y)
+    for (int y = y0; y < y1; ++y)
         for (int x = 0; x < film.width(); ++x, i += 3) {
             const double n = film.divisor(x, y, 0), m = film.divisor(x, y, 1);
             double squares = 0;
@@ -68,6 +71,21 @@ std::vector<double> display_noise(const Film& film, const ViewSpec& view, double
             noise.push_back(known ? error : kInfinity);
         }
     return noise;
+}
+
+/// Calls `visit` with the noise of a few rows after the other.
+template <class Visit>
+void for_noise(const Film& film, const ViewSpec& view, double scale, Visit visit) {
+    for (int y = 0; y < film.height(); y += kNoiseRows) visit(noise_of_rows(film, y, std::min(film.height(), y + kNoiseRows), view, scale));
+}
+
+}  // namespace
+
+std::vector<double> display_noise(const Film& film, const ViewSpec& view, double scale) {
+    std::vector<double> all;
+    all.reserve(static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()));
+    for_noise(film, view, scale, [&](const std::vector<double>& rows) { all.insert(all.end(), rows.begin(), rows.end()); });
+    return all;
 }
 
 SamplingReport report_sampling(const Film& film, SamplingStop stopped_by, const ViewSpec& view, double scale) {
@@ -87,8 +105,10 @@ SamplingReport report_sampling(const Film& film, SamplingStop stopped_by, const 
     if (!report.error.known) return report;
     double sum = 0;
     std::size_t count = 0;
-    for (const double noise : display_noise(film, view, scale))
-        if (std::isfinite(noise)) sum += noise, ++count;
+    for_noise(film, view, scale, [&](const std::vector<double>& rows) {
+        for (const double noise : rows)
+            if (std::isfinite(noise)) sum += noise, ++count;
+    });
     report.display_error = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kInfinity;
     return report;
 }

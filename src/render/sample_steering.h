@@ -31,6 +31,9 @@ SamplingReport report_sampling(const Film& film, SamplingStop stopped_by, const 
 ///
 /// @param scale  of radiance in the picture over that in the film
 std::vector<double> display_noise(const Film& film, const ViewSpec& view, double scale);
+/// Rows whose noise is measured at once where a figure is all that is wanted: pictures of both halves would take as much
+/// memory as a film.
+inline constexpr int kNoiseRows = 64;
 
 /// Deals out the samples of one frame, round by round: all pixels get as many until those that are good enough stop.
 ///

@@ -84,6 +84,7 @@ void add_material(TrackList& list, const std::string& scene, const MaterialSpec&
     list.add(name + ".alpha_cutoff", material.alpha_cutoff);
     list.add(name + ".metallic", material.metallic);
     list.add(name + ".roughness", material.roughness);
+    list.add(name + ".ior", material.ior);
     list.add(name + ".emissive", material.emissive);
     list.add(name + ".emissive_strength", material.emissive_strength);
     list.add(name + ".normal_scale", material.normal_scale);

@@ -20,7 +20,7 @@ constexpr std::uint64_t kLargestZeros = 1ull << 30;         // bytes of accessor
 constexpr int kDeepestJson = 64;                            // glTF itself needs 9 levels, extensions a few more
 constexpr std::string_view kDamaged = "the file is damaged; export it anew";
 
-constexpr std::string_view kSupported[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+constexpr std::string_view kSupported[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_materials_ior",
                                            "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_variants", "KHR_node_visibility",
                                            "EXT_mesh_gpu_instancing", "KHR_animation_pointer"};
 

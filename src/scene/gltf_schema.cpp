@@ -134,6 +134,8 @@ constexpr Property kProperties[] = {
     {"material_extensions", "KHR_materials_unlit", Type::object, "unlit"},
     {"material_extensions", "KHR_materials_emissive_strength", Type::object, "emissive_strength"},
     {"emissive_strength", "emissiveStrength", Type::number, {}, kOptional, 0},
+    {"material_extensions", "KHR_materials_ior", Type::object, "ior"},
+    {"ior", "ior", Type::number, {}, kOptional, 0},
     {"pbr", "baseColorFactor", Type::numbers, {}, kOptional, 0, 1, 4},
     {"pbr", "baseColorTexture", Type::object, "texture_info"},
     {"pbr", "metallicFactor", Type::number, {}, kOptional, 0, 1},

@@ -74,7 +74,23 @@ double emissive_strength(const tinygltf::Material& source) {
     return strength ? number(*strength, "emissiveStrength", 1) : 1;
 }
 
+/// Either of the two meanings that the extension knows.
+double index_of_refraction(const GltfDocument& document, std::size_t material) {
+    const tinygltf::Value* values = extension(document.model().materials[material].extensions, "KHR_materials_ior");
+    const double ior = values ? number(*values, "ior", kDefaultIor) : kDefaultIor;
+    if (ior > 0 && ior < 1)
+        document.fail(fmt::format("/materials/{}/extensions/KHR_materials_ior/ior", material), fmt::format("is {}", ior),
+                      "expected an index of refraction of at least 1, or 0: all light is reflected");
+    return ior;
+}
+
 }  // namespace
+
+/// Source: KHR_materials_ior; Fresnel's equations at normal incidence. An index of 0 stands for an infinite one.
+float dielectric_f0(double ior) {
+    const double r = (ior - 1) / (ior + 1);
+    return static_cast<float>(r * r);
+}
 
 /// Source: KHR_texture_transform (the text; its TextureTransformTest tells the sign of the rotation).
 TextureSlot transformed(TextureSlot slot, const TextureTransform& transform) {
@@ -94,6 +110,7 @@ MaterialSource material_source(const GltfDocument& document, std::size_t index) 
     result.index = static_cast<int>(index);
     if (source.emissiveFactor.size() == 3) result.emissive = {source.emissiveFactor[0], source.emissiveFactor[1], source.emissiveFactor[2]};
     result.emissive_strength = emissive_strength(source);
+    result.ior = index_of_refraction(document, index);
     result.transforms = {transform_of(source.pbrMetallicRoughness.baseColorTexture.extensions), transform_of(source.pbrMetallicRoughness.metallicRoughnessTexture.extensions),
                          transform_of(source.normalTexture.extensions), transform_of(source.emissiveTexture.extensions), transform_of(source.occlusionTexture.extensions)};
     return result;
@@ -115,6 +132,7 @@ kernels::Material read_material(const GltfDocument& document, std::size_t index,
     material.metallic = static_cast<float>(pbr.metallicFactor);
     material.roughness = static_cast<float>(pbr.roughnessFactor);
     material.emission = vector3(source.emissiveFactor, 0) * static_cast<float>(emissive_strength(source));
+    material.dielectric_f0 = dielectric_f0(index_of_refraction(document, index));
     material.unlit = extension(source.extensions, "KHR_materials_unlit") != nullptr;
     material.alpha_mode = alpha_mode(source.alphaMode);
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);

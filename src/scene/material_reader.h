@@ -7,7 +7,7 @@
 namespace kadr {
 
 /// One glTF material; its textures are registered with `textures`.
-/// @throws InputError for texture coordinates beyond the second set
+/// @throws InputError for texture coordinates beyond the second set, and for an index of refraction that there is not
 kernels::Material read_material(const GltfDocument& document, std::size_t index, TextureSet& textures);
 
 /// The factors that read_material multiplied.

@@ -26,6 +26,7 @@ constexpr Pattern kPatterns[] = {
     {"/materials/#/pbrMetallicRoughness/roughnessFactor", Property::roughness},
     {"/materials/#/emissiveFactor", Property::emissive, 3},
     {"/materials/#/extensions/KHR_materials_emissive_strength/emissiveStrength", Property::emissive_strength},
+    {"/materials/#/extensions/KHR_materials_ior/ior", Property::ior},
     {"/materials/#/alphaCutoff", Property::alpha_cutoff},
     {"/materials/#/normalTexture/scale", Property::normal_scale},
     {"/materials/#/occlusionTexture/strength", Property::occlusion_strength},

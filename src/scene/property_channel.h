@@ -17,6 +17,7 @@ enum class Property {
     roughness,
     emissive,
     emissive_strength,
+    ior,
     alpha_cutoff,
     normal_scale,
     occlusion_strength,

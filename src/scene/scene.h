@@ -87,11 +87,17 @@ struct TextureTransform {
 /// The slot with the transform as its matrix.
 kernels::TextureSlot transformed(kernels::TextureSlot slot, const TextureTransform& transform);
 
+inline constexpr double kDefaultIor = 1.5;  ///< index of refraction of materials without KHR_materials_ior
+
+/// What a dielectric of an index of refraction reflects of light that comes straight on; all of it where the index is 0.
+float dielectric_f0(double ior);
+
 /// What a material was made of, for tracks that change one of its factors.
 struct MaterialSource {
     int index = -1;            ///< of the material in its file; -1: glTF's default material
     glm::dvec3 emissive{0};    ///< the factor; times the strength it is Material::emission
     double emissive_strength = 1;
+    double ior = kDefaultIor;  ///< index of refraction, from which Material::dielectric_f0 is
     std::array<TextureTransform, kTextureUses> transforms;  ///< [TextureUse]
 };
 

@@ -15,6 +15,7 @@ MaterialSpec read_material(const Section& section, const YamlEntry& entry) {
     material.base_color = read_vector3_track(section["base_color"]);
     material.metallic = read_number_track(section["metallic"]);
     material.roughness = read_number_track(section["roughness"]);
+    material.ior = read_number_track(section["ior"]);
     material.emissive = read_vector3_track(section["emissive"]);
     material.emissive_strength = read_number_track(section["emissive_strength"]);
     material.alpha = read_number_track(section["alpha"]);

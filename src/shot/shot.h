@@ -33,7 +33,7 @@ struct MaterialSpec {
     SourceLocation where;
     std::optional<Track<glm::dvec3>> base_color;  ///< linear
     std::optional<Track<glm::dvec3>> emissive;    ///< linear; times emissive_strength it is radiance
-    std::optional<Track<double>> metallic, roughness, emissive_strength;
+    std::optional<Track<double>> metallic, roughness, ior, emissive_strength;
     std::optional<Track<double>> alpha;  ///< makes a material that the file calls opaque blend
     std::optional<Track<double>> alpha_cutoff, normal_scale;
     bool operator==(const MaterialSpec&) const = default;

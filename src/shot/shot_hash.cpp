@@ -50,7 +50,7 @@ public:
         (*this)(l.clips, l.clip_name, l.clip_index, l.at_s, l.start_s, l.speed, l.in_s, l.out_s, l.loop, l.weight);
     }
     void add(const MaterialSpec& m) {
-        (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.emissive_strength, m.alpha, m.alpha_cutoff,
+        (*this)(m.name, m.base_color, m.emissive, m.metallic, m.roughness, m.ior, m.emissive_strength, m.alpha, m.alpha_cutoff,
                 m.normal_scale);
     }
     void add(const NodeOverride& n) { (*this)(n.name, n.transform, n.translates, n.rotates, n.scales, n.visible, n.weights); }

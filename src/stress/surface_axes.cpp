@@ -104,8 +104,6 @@ void set_ior(Stage& stage, double ior) {
     material.roughness = 0.3;
 }
 
-constexpr std::string_view kNoIor = "KHR_materials_ior, which Kadr does not support";
-
 }  // namespace
 
 std::vector<Axis> surface_axes() {
@@ -126,12 +124,12 @@ std::vector<Axis> surface_axes() {
          .values = {0, 1, 3, 30, 300}, .quick = {0, 3, 30}, .ordinary = 0, .same_picture = true, .apply = set_nesting},
         {.name = "coplanar", .unit = "", .meaning = "more squares of the floor's material in the floor's plane",
          .values = {0, 1, 2, 16}, .quick = {0, 2, 16}, .ordinary = 0, .same_picture = true, .apply = add_coplanar},
-        {.name = "roughness", .unit = "", .meaning = "of a ball of metal",
-         .values = {0, 1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.3, 0.6, 1}, .quick = {0, 1e-6, 1e-2, 0.3, 1}, .ordinary = 0.3, .apply = set_roughness},
+        {.name = "roughness", .unit = "", .meaning = "of a ball of metal, a lamp in its reflection; a mirror below 0.0032",
+         .values = {0, 1e-6, 1e-4, 1e-3, 3.1e-3, 3.2e-3, 1e-2, 3e-2, 0.1, 0.3, 0.6, 1}, .quick = {0, 1e-6, 3.2e-3, 1e-2, 0.3, 1}, .ordinary = 0.3, .apply = set_roughness},
         {.name = "metallic", .unit = "", .meaning = "of a ball of roughness 0.3",
          .values = {0, 1e-6, 0.1, 0.5, 0.9, 1}, .quick = {0, 0.5, 1}, .ordinary = 0, .apply = set_metallic},
-        {.name = "ior", .unit = "", .meaning = "index of refraction of a ball of roughness 0.3",
-         .values = {1, 1.0001, 1.5, 5}, .quick = {1, 1.5, 5}, .ordinary = 1.5, .refusals = {{1, kNoIor}, {1.0001, kNoIor}, {1.5, kNoIor}, {5, kNoIor}}, .apply = set_ior},
+        {.name = "ior", .unit = "", .meaning = "index of refraction of a ball of roughness 0.3; 0 stands for an infinite one",
+         .values = {0, 1, 1.0001, 1.5, 5, 1e6}, .quick = {0, 1, 1.0001, 1.5, 5}, .ordinary = 1.5, .apply = set_ior},
     };
 }
 

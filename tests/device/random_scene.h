@@ -63,7 +63,7 @@ private:
         "base texture", "roughness texture", "emission texture", "normal map", "mask", "blend", "unlit", "emission",
         "double sided", "metal", "sun", "wide sun", "point", "sphere", "spot", "area", "moving light", "dark light", "sky image", "hidden sky",
         "lens", "moving camera", "many camera keys", "orthographic", "gaussian", "mitchell", "rolling shutter", "clamp", "culled", "few bounces",
-        "previous"};
+        "previous", "smooth", "ior"};
 
     bool has(std::string_view feature) const {
         return std::find(features_.begin(), features_.end(), feature) != features_.end();
@@ -147,6 +147,8 @@ private:
         if (draw("blend")) m.alpha_mode = kernels::AlphaMode::blend;
         if (m.alpha_mode != kernels::AlphaMode::opaque) m.alpha = dice_.between(0.2f, 1);
         m.unlit = draw("unlit");
+        if (draw("smooth")) m.roughness = dice_.chance() ? 0.0f : dice_.between(0, 0.03f);
+        if (draw("ior")) m.dielectric_f0 = dice_.between(0, 0.5f);
         m.double_sided = draw("double sided");
         return m;
     }

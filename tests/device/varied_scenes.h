@@ -169,6 +169,23 @@ inline const std::vector<VariedScene>& varied_scenes() {
              s.add_moving(mesh, textured(kernels::AlphaMode::blend), {turned(-0.3), turned(0.3)});
              add_floor(s, true);
          }},
+        {"mirrors of metal and of glass, a panel in them",
+         [](SmallScene& s) {
+             kernels::Material glass = material({0.2f, 0.5f, 0.7f}, 0, 0.002f);
+             glass.dielectric_f0 = 0.1f;
+             s.add_instance(s.add_mesh(unit_sphere(16)), material({0.9f, 0.8f, 0.6f}, 0.8f, 0), place({-1.1, 0, 0}));
+             s.add_instance(s.add_mesh(unit_sphere(16)), glass, place({1.1, 0, 0}));
+             s.add_instance(s.add_mesh(unit_square()), material({0.9f, 0.9f, 0.9f}, 1, 0.01f), place({0, 0.5, -2}, 2));
+             add_floor(s, true);
+             kernels::Light panel;
+             panel.kind = kernels::LightKind::area;
+             panel.radiance = {5, 4, 3};
+             panel.position = {0, 2, 3};
+             panel.direction = {0, -0.55f, -0.835f};
+             panel.axis_u = {0.7f, 0, 0};
+             panel.axis_v = {0, 0.584f, -0.385f};
+             s.add_light(panel);
+         }},
         {"a lens, a rolling shutter and a filter with negative lobes",
          [](SmallScene& s) {
              s.add_moving(s.add_mesh(unit_sphere(16)), shiny, {place({-1, 0, 0}), turned(0.5), place({1, 0, 0})});

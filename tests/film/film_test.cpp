@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +44,7 @@ TEST(Film, DividesSumsBySamples) {
     Film film(2, 1, all_layers());
     film.beauty(1, 0) = {4, 8, 12, 2};
     film.samples(1, 0) = 4;
-    film.surface(1, 0) = {{1, 2, 3}, {0, 3, 4}, 6, 2, {5, -1}};
+    film.add_surface(1, 0, {{1, 2, 3}, {0, 3, 4}, 6, 2, {5, -1}});
     const Image image = film.develop();
     const auto at = [&](const char* name) { return image.at(1, 0, channel(image, name)); };
     EXPECT_EQ(at("R"), 1);
@@ -79,7 +80,7 @@ TEST(Film, HoldsNoNanAndNoInfinityButTheBackgroundsDepth) {
     Film film(1, 1, all_layers());
     film.beauty(0, 0) = {kNan, kInfinity, -kInfinity, kNan};
     film.samples(0, 0) = 1;
-    film.surface(0, 0) = {{kNan, kInfinity, 0}, {kNan, 0, 1}, kNan, 1, {kInfinity, kNan}};
+    film.add_surface(0, 0, {{kNan, kInfinity, 0}, {kNan, 0, 1}, kNan, 1, {kInfinity, kNan}});
     film.beauty(0, 0, 1) = {1, 1, 1, 1};
     film.samples(0, 0, 1) = 1;
     for (const float value : film.develop().pixels) EXPECT_TRUE(std::isfinite(value)) << value;
@@ -96,11 +97,64 @@ TEST(Film, ErrorIsTheStandardErrorOfTheMean) {
     EXPECT_FLOAT_EQ(image.at(0, 0, channel(image, "error.Y")), std::sqrt(0.75f));
 }
 
+TEST(Film, KeepsOnlyTheLayersThatAreWanted) {
+    FilmLayers layers;
+    layers.normal = layers.motion = true;
+    Film film(1, 1, layers);
+    film.samples(0, 0) = 1;
+    film.add_surface(0, 0, {{1, 2, 3}, {0, 3, 4}, 6, 2, {5, -1}});
+    const Film::Surface sums = film.surface(0, 0);
+    EXPECT_EQ(sums.normal[1], 3);
+    EXPECT_EQ(sums.motion[1], -1);
+    EXPECT_EQ(sums.depth_weight, 2) << "what motion is divided by";
+    EXPECT_EQ(sums.albedo[0], 0);
+    EXPECT_EQ(sums.depth, 0);
+    EXPECT_THAT(film.develop().channels, testing::ElementsAre("R", "G", "B", "A", "normal.X", "normal.Y", "normal.Z", "motion.X", "motion.Y"));
+    EXPECT_EQ(Film::bytes_per_pixel(layers, 1, false), 36u + 24 + 16 + 8);
+    EXPECT_EQ(Film::bytes_per_pixel({}, 2, true), 2u * (36 + 8));
+}
+
+TEST(Film, OfOneHalfIsThePictureWithoutItsNoise) {
+    Film film(1, 1, {}, 1);
+    film.beauty(0, 0) = {4, 8, 12, 2};
+    film.samples(0, 0) = 4;
+    EXPECT_THAT(film.develop().pixels, testing::ElementsAre(1, 2, 3, 0.5f));
+    EXPECT_EQ(film.samples_of_both(0, 0), 4u);
+    EXPECT_EQ(film.divisor(0, 0, 1), 0);
+}
+
+/// Values that tell every pixel of every layer.
+Film numbered(int width, int height, const FilmLayers& layers) {
+    Film film(width, height, layers);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double n = 1 + x + 0.001 * y;
+            for (int half = 0; half < 2; ++half) {
+                film.beauty(x, y, half) = {n, 2 * n + half, 3 * n, 1};
+                film.samples(x, y, half) = 1;
+            }
+            film.add_surface(x, y, {{n, n, 2 * n}, {0, 1, n}, n, 1, {n, -n}});
+        }
+    return film;
+}
+
+TEST(Film, IsTheSamePictureWhetherItGoesOrStays) {
+    constexpr int kWidth = 4096, kHeight = 1100;  // three bands
+    FilmLayers layers;
+    layers.depth = layers.error = true;
+    Film film = numbered(kWidth, kHeight, layers);
+    const Image stays = film.develop();
+    for (const int y : {0, 511, 512, 1023, 1024, 1099}) EXPECT_FLOAT_EQ(stays.at(7, y, 0), 8 + 0.001f * static_cast<float>(y));
+    const Image goes = Film::develop(std::move(film));
+    EXPECT_EQ(goes.channels, stays.channels);
+    EXPECT_TRUE(goes.pixels == stays.pixels);
+}
+
 TEST(Film, ClearForgetsEverything) {
     Film film(1, 1, all_layers());
     film.beauty(0, 0) = {1, 1, 1, 1};
     film.samples(0, 0) = 1;
-    film.surface(0, 0) = {{1, 1, 1}, {0, 0, 1}, 1, 1, {1, 1}};
+    film.add_surface(0, 0, {{1, 1, 1}, {0, 0, 1}, 1, 1, {1, 1}});
     film.beauty(0, 0, 1) = {1, 1, 1, 1};
     film.samples(0, 0, 1) = 2;
     film.clear();

@@ -413,6 +413,7 @@ TEST(PointerLimits, EveryPropertyHasItsOwn) {
     drive(stage, Property::metallic, 4, track<double>({{0, -1}}));
     drive(stage, Property::emissive_strength, 4, track<double>({{0, -3}}));
     drive(stage, Property::normal_scale, 4, track<double>({{0, -2}}));
+    drive(stage, Property::ior, 4, track<double>({{0, 0.5}}));
     const SceneSnapshot snapshot = stage.snapshot();
     const kernels::Material& m = snapshot.materials.at(snapshot.instances.at(0).material);
     EXPECT_EQ(m.base_color.x, 0.5f);
@@ -422,11 +423,13 @@ TEST(PointerLimits, EveryPropertyHasItsOwn) {
     EXPECT_EQ(m.metallic, 0);
     EXPECT_EQ(m.emission.x, 0);
     EXPECT_EQ(m.normal_scale, -2);
+    EXPECT_EQ(m.dielectric_f0, 0);
     const std::string warnings = limit_warnings(stage);
     EXPECT_NE(warnings.find("the base colour of material 'Paint' to 1.5 at 0 s of the clip\n  expected 0 to 1; the property is held there"), std::string::npos) << warnings;
     EXPECT_NE(warnings.find("the roughness of material 'Paint' to 1.25"), std::string::npos) << warnings;
     EXPECT_NE(warnings.find("the metallic factor of material 'Paint' to -1"), std::string::npos) << warnings;
     EXPECT_NE(warnings.find("the emissive strength of material 'Paint' to -3"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("the index of refraction of material 'Paint' to 0.5 at 0 s of the clip\n  expected at least 1"), std::string::npos) << warnings;
     EXPECT_EQ(warnings.find("normal"), std::string::npos) << warnings;
 }
 

@@ -60,6 +60,7 @@ TEST(Materials, EveryFactorHasItsTrack) {
     MaterialSpec& paint = stage.change("Paint");
     paint.metallic = Track<double>(0.25);
     paint.roughness = Track<double>(0.5);
+    paint.ior = Track<double>(2.0);
     paint.emissive = Track<glm::dvec3>(glm::dvec3(1, 2, 3));
     paint.emissive_strength = Track<double>(2.0);
     paint.alpha = Track<double>(0.75);
@@ -68,6 +69,7 @@ TEST(Materials, EveryFactorHasItsTrack) {
     const kernels::Material m = stage.worn(stage.snapshot(), 0);
     EXPECT_EQ(m.metallic, 0.25f);
     EXPECT_EQ(m.roughness, 0.5f);
+    EXPECT_FLOAT_EQ(m.dielectric_f0, 1.0f / 9);
     EXPECT_EQ(m.emission.z, 6);
     EXPECT_EQ(m.alpha, 0.75f);
     EXPECT_EQ(m.alpha_mode, kernels::AlphaMode::blend);  // the file's is opaque, where alpha would mean nothing

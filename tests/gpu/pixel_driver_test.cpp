@@ -18,8 +18,7 @@ namespace {
 
 using kernels::IntegratorKind;
 
-static_assert(sizeof(Film::Beauty) == sizeof(kernels::FilmBeauty) &&
-              sizeof(Film::Surface) == sizeof(kernels::FilmSurface));
+static_assert(sizeof(Film::Beauty) == sizeof(kernels::FilmBeauty));
 
 /// The device flushes denormals while it traces.
 class FlushDenormals {
@@ -33,17 +32,23 @@ private:
 
 /// A film as it lies on a device.
 struct DeviceFilm {
-    DeviceFilm(int width, int height, bool layers) : width_(width), pixels_(static_cast<std::size_t>(width * height)) {
+    DeviceFilm(int width, int height, const FilmLayers& layers) : width_(width), pixels_(static_cast<std::size_t>(width * height)) {
         for (int half = 0; half < Film::kHalves; ++half) {
             beauty_[half].resize(pixels_);
             samples_[half].resize(pixels_);
             weights_[half].resize(pixels_);
         }
-        if (layers) surface_.resize(pixels_);
+        if (layers.albedo) albedo_.resize(pixels_);
+        if (layers.normal) normal_.resize(pixels_);
+        if (layers.depth) depth_.resize(pixels_);
+        if (layers.depth || layers.motion) hits_.resize(pixels_);
+        if (layers.motion) motion_.resize(pixels_);
     }
     kernels::FilmView view(int half, bool weighted) {
+        // Of an empty vector: null.
         return {beauty_[half].data(), samples_[half].data(), weighted ? weights_[half].data() : nullptr,
-                surface_.empty() ? nullptr : surface_.data()};
+                albedo_.data(),       normal_.data(),        depth_.data(),
+                hits_.data(),         motion_.data()};
     }
     void copy_to(Film& film) const {
         for (std::size_t i = 0; i < pixels_; ++i) {
@@ -53,8 +58,13 @@ struct DeviceFilm {
                 film.samples(x, y, half) = samples_[half][i];
                 if (film.weighted()) film.weight(x, y, half) = weights_[half][i];
             }
-            if (!surface_.empty())
-                std::memcpy(static_cast<void*>(&film.surface(x, y)), &surface_[i], sizeof(Film::Surface));
+            Film::Surface surface;
+            if (!albedo_.empty()) std::memcpy(surface.albedo, &albedo_[i], sizeof surface.albedo);
+            if (!normal_.empty()) std::memcpy(surface.normal, &normal_[i], sizeof surface.normal);
+            if (!depth_.empty()) surface.depth = depth_[i];
+            if (!hits_.empty()) surface.depth_weight = hits_[i];
+            if (!motion_.empty()) std::memcpy(surface.motion, &motion_[i], sizeof surface.motion);
+            film.add_surface(x, y, surface);
         }
     }
 
@@ -64,7 +74,9 @@ private:
     std::vector<kernels::FilmBeauty> beauty_[Film::kHalves];
     std::vector<unsigned> samples_[Film::kHalves];
     std::vector<double> weights_[Film::kHalves];
-    std::vector<kernels::FilmSurface> surface_;
+    std::vector<kernels::FilmVector> albedo_, normal_;
+    std::vector<double> depth_, hits_;
+    std::vector<kernels::FilmMotion> motion_;
 };
 
 template <unsigned R, IntegratorKind kIntegrator>
@@ -93,9 +105,11 @@ void launch(IntegratorKind integrator, unsigned requirements, const kernels::Lau
         KADR_KERNEL(path, kMaps | kSpecials | kTransforms | kDeformation),
         KADR_KERNEL(path, kEmitters),
         KADR_KERNEL(path, kTransforms | kEmitters),
-        KADR_KERNEL(path, kMaps | kSpecials | kEmitters),
-        KADR_KERNEL(path, kMaps | kSpecials | kTransforms),
+        KADR_KERNEL(path, kMaps | kSpecials | kEmitters | kMirrors),
+        KADR_KERNEL(path, kMaps | kSpecials | kTransforms | kMirrors),
+        KADR_KERNEL(path, kEmitters | kMirrors | kIor),
         KADR_KERNEL(direct, 0),
+        KADR_KERNEL(direct, kIor),
         KADR_KERNEL(direct, kTransforms),
         KADR_KERNEL(direct, kTransforms | kDeformation),
         KADR_KERNEL(direct, kMaps | kSpecials | kTransforms | kDeformation),
@@ -171,7 +185,7 @@ Rendered render_by_launches(SmallScene& s, const Request& wanted) {
     EmbreeScene scene(device.get(), s.scene, s.environment.width > 0 ? &s.environment : nullptr);
     scene.set_frame(s.snapshot);
     const int width = s.snapshot.settings.width, height = s.snapshot.settings.height;
-    DeviceFilm device_film(width, height, wanted.layers.any_surface());
+    DeviceFilm device_film(width, height, wanted.layers);
     kernels::FilterTable filter{};
     build_filter(s.snapshot.settings.filter, s.snapshot.settings.filter_radius, filter);
     kernels::LaunchCounters counters{};
@@ -252,7 +266,7 @@ TEST(PixelDriverAlone, DropsSamplesWhoseRayIsLost) {
     SmallScene s = sunlit(IntegratorKind::path);
     kernels::FilterTable filter{};
     build_filter(kernels::FilterKind::box, 0.5f, filter);
-    DeviceFilm film(1, 1, false);
+    DeviceFilm film(1, 1, {});
     kernels::LaunchCounters counters{};
     kernels::LaunchParams params{};
     params.scene.settings.width = params.scene.settings.height = params.x1 = params.y1 = 1;

@@ -108,7 +108,7 @@ TEST(HiprtDevice, HalvesLayersWeightsAndActivePixels) {
         std::vector<std::uint8_t> active(24 * 20, 0);
         active[3 * 24 + 7] = 1;
         FilmLayers layers;
-        layers.depth = true;
+        layers.depth = layers.albedo = layers.motion = true;
         Pass pass;
         pass.sample_count = 2;
         pass.half = 1;
@@ -116,7 +116,11 @@ TEST(HiprtDevice, HalvesLayersWeightsAndActivePixels) {
         Film film = render(*device, s, pass, layers, true);
         EXPECT_EQ(film.samples(7, 3, 1), 2u);
         EXPECT_EQ(film.weight(7, 3, 1), 1.0f);
-        EXPECT_EQ(film.surface(7, 3).depth, 4.0f);
+        EXPECT_EQ(film.surface(7, 3).depth, 4);
+        EXPECT_EQ(film.surface(7, 3).albedo[1], 6);
+        EXPECT_EQ(film.surface(7, 3).normal[2], 0) << "a layer that nobody wants";
+        EXPECT_EQ(film.surface(7, 3).depth_weight, 10);
+        EXPECT_EQ(film.surface(7, 3).motion[1], 12);
         EXPECT_EQ(film.samples(7, 3, 0), 0u);
         EXPECT_EQ(film.samples(8, 3, 1), 0u);
         EXPECT_EQ(device->statistics().pixel_samples, 2u);

@@ -52,7 +52,11 @@ double FakeGpu::run(const std::string& function, const LaunchParams& params) {
                 beauty.alpha += 1;
                 ++params.film.samples[pixel];
                 if (params.film.weights) params.film.weights[pixel] += 0.5f;
-                if (params.film.surface) params.film.surface[pixel].depth += 2;
+                if (params.film.depth) params.film.depth[pixel] += 2;
+                if (params.film.albedo) params.film.albedo[pixel].y += 3;
+                if (params.film.normal) params.film.normal[pixel].z += 4;
+                if (params.film.hits) params.film.hits[pixel] += 5;
+                if (params.film.motion) params.film.motion[pixel].y += 6;
             }
         }
     params.counters->samples += static_cast<unsigned long long>(samples);
@@ -67,7 +71,11 @@ void FakeGpu::check_addresses(const LaunchParams& params) {
     expect(params.film.beauty + first, rows * width, "the film");
     expect(params.film.samples + first, rows * width, "the film's samples");
     if (params.film.weights) expect(params.film.weights + first, rows * width, "the film's weights");
-    if (params.film.surface) expect(params.film.surface + first, rows * width, "the film's layers");
+    if (params.film.albedo) expect(params.film.albedo + first, rows * width, "the film's albedo");
+    if (params.film.normal) expect(params.film.normal + first, rows * width, "the film's normals");
+    if (params.film.depth) expect(params.film.depth + first, rows * width, "the film's depth");
+    if (params.film.hits) expect(params.film.hits + first, rows * width, "the film's hits");
+    if (params.film.motion) expect(params.film.motion + first, rows * width, "the film's motion");
     if (params.active)
         expect(params.active, width * static_cast<std::size_t>(params.scene.settings.height), "active pixels");
     expect(params.filter, 1, "the filter");

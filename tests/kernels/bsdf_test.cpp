@@ -148,8 +148,8 @@ TEST(Bsdf, ExtremesAreFinite) {
 }
 
 /// The formula as the documentation states it, in double.
-double analytic_reference(double c, double metallic, double roughness, const double n[3], const double o[3],
-                          const double i[3]) {
+double analytic_reference(double c, double metallic, double roughness, double dielectric, const double n[3],
+                          const double o[3], const double i[3]) {
     const auto dot3 = [](const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     double h[3] = {o[0] + i[0], o[1] + i[1], o[2] + i[2]};
     const double length = std::sqrt(dot3(h, h));
@@ -161,7 +161,7 @@ double analytic_reference(double c, double metallic, double roughness, const dou
     const double d = a2 / (M_PI * bottom * bottom);
     const double k = alpha / 2.0;
     const double g = no / (no * (1 - k) + k) * ni / (ni * (1 - k) + k);
-    const double f0 = 0.04 + (c - 0.04) * metallic;
+    const double f0 = dielectric + (c - dielectric) * metallic;
     const double f = f0 + (1 - f0) * std::pow(1 - oh, 5);
     return (1 - f) * (1 - metallic) * c / M_PI + d * g * f / (4 * no * ni);
 }
@@ -176,10 +176,10 @@ TEST(Analytic, MatchesTheFormulaInDouble) {
         if (dot(n, wo) < 0.0f) wo = -wo;
         if (dot(n, wo) < 0.01f) continue;
         const Vec3f c{random(), random(), random()};
-        const float metallic = random(), roughness = 0.05f + 0.95f * random();
-        const Vec3f f = analytic_brdf(c, metallic, roughness, n, wo, wi);
+        const float metallic = random(), roughness = 0.05f + 0.95f * random(), f0 = random();
+        const Vec3f f = analytic_brdf(c, metallic, roughness, f0, n, wo, wi);
         const double dn[3] = {n.x, n.y, n.z}, dwo[3] = {wo.x, wo.y, wo.z}, dwi[3] = {wi.x, wi.y, wi.z};
-        const double expected = analytic_reference(c.x, metallic, roughness, dn, dwo, dwi);
+        const double expected = analytic_reference(c.x, metallic, roughness, f0, dn, dwo, dwi);
         // Directions are unit to 1e-7, which the narrow D (alpha 2.5e-3) magnifies.
         ASSERT_NEAR(f.x, expected, 2e-3 * expected + 1e-6) << roughness;
         lit += expected > 0.0;

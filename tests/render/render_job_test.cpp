@@ -328,11 +328,11 @@ TEST_F(RenderJobTest, PicturesBeyondTheMachineAreRefusedBeforeTheyAreBegun) {
         }
         return std::string("nothing was thrown");
     };
-    const std::string expected = "tiny.yaml: error: image.size is [65536, 65536]: a frame takes about 446.7 GB of memory, and this machine has ";
+    const std::string expected = "tiny.yaml: error: image.size is [65536, 65536]: a frame takes about 309.4 GB of memory, and this machine has ";
     EXPECT_THAT(refusal([&] { check_shot(options_.shot, options_.overrides); }), HasSubstr(expected));
     EXPECT_THAT(refusal([&] { render_shot(options_, events_); }), HasSubstr(expected));
     options_.overrides.set = {{"output.aovs", "[ depth ]"}};
-    EXPECT_THAT(refusal([&] { check_shot(options_.shot, options_.overrides); }), AllOf(HasSubstr("824.6 GB"), HasSubstr("expected a smaller picture, or fewer output.aovs")));
+    EXPECT_THAT(refusal([&] { check_shot(options_.shot, options_.overrides); }), AllOf(HasSubstr("378.2 GB"), HasSubstr("expected a smaller picture, or fewer output.aovs")));
 }
 
 }  // namespace

@@ -87,10 +87,22 @@ TEST(Requirements, OfTheCamera) {
 TEST(Requirements, OfMaterials) {
     const auto with = [](auto change) {
         Plain stage;
+        TextureData& texture = stage.scene.textures.emplace_back();
+        texture.width = texture.height = 1;
+        texture.format = kernels::TexelFormat::rgba8_linear;
+        texture.texels = {0, 128, 0, 255};
         change(stage.material());
         return stage.more();
     };
     const std::string paint = "material 'paint'";
+    EXPECT_EQ(with([](kernels::Material& m) { m.roughness = 0.03f; }), (Entries{{Feature::mirror, paint}}));
+    EXPECT_THAT(with([](kernels::Material& m) { m.roughness = 0.033f; }), IsEmpty());
+    EXPECT_EQ(with([](kernels::Material& m) { m.dielectric_f0 = 0.1f; }), (Entries{{Feature::index_of_refraction, paint}}));
+    EXPECT_EQ(with([](kernels::Material& m) {
+                  m.roughness = 0.06f;  // half of it: the texture's
+                  m.metallic_roughness_texture.texture = 0;
+              }),
+              (Entries{{Feature::dielectric, paint}, {Feature::mirror, paint}, {Feature::texture_metallic_roughness, paint}}));
     EXPECT_EQ(with([](kernels::Material& m) { m.metallic = 0.5f; }), (Entries{{Feature::dielectric, paint}}));
     EXPECT_EQ(with([](kernels::Material& m) { m.alpha_mode = kernels::AlphaMode::mask; }), (Entries{{Feature::alpha_mask, paint}}));
     EXPECT_EQ(with([](kernels::Material& m) { m.alpha_mode = kernels::AlphaMode::blend; }), (Entries{{Feature::alpha_blend, paint}}));

@@ -68,6 +68,31 @@ TEST(Materials, ReadFactorsAndExtensions) {
     EXPECT_TRUE(m.unlit);
 }
 
+kernels::Material with_ior(const nlohmann::json& ior) {
+    Textured file;
+    file.material()["extensions"]["KHR_materials_ior"] = ior;
+    return file.load().materials.at(0);
+}
+
+TEST(Materials, ReflectByTheirIndexOfRefraction) {
+    EXPECT_EQ(Textured().load().materials.at(0).dielectric_f0, kernels::kDielectricF0);
+    EXPECT_EQ(with_ior(nlohmann::json::object()).dielectric_f0, kernels::kDielectricF0);
+    EXPECT_EQ(with_ior({{"ior", 1.5}}).dielectric_f0, kernels::kDielectricF0);
+    EXPECT_EQ(with_ior({{"ior", 1}}).dielectric_f0, 0.0f);
+    EXPECT_FLOAT_EQ(with_ior({{"ior", 1.33}}).dielectric_f0, 0.020059f);  // water
+    EXPECT_FLOAT_EQ(with_ior({{"ior", 5}}).dielectric_f0, 4.0f / 9);
+    EXPECT_EQ(with_ior({{"ior", 0}}).dielectric_f0, 1.0f);
+}
+
+TEST(Materials, AnIndexOfRefractionBelowThatOfNothingIsAnError) {
+    try {
+        with_ior({{"ior", 0.9}});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("/materials/0/extensions/KHR_materials_ior/ior is 0.9\n  expected an index of refraction of at least 1, or 0: all light is reflected"));
+    }
+}
+
 TEST(Materials, TransformTextureCoordinates) {
     Textured file;
     file.material()["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {

@@ -50,6 +50,7 @@ TEST(Pointers, NameProperties) {
         {"/materials/0/pbrMetallicRoughness/metallicFactor", Property::metallic, 0},
         {"/materials/0/pbrMetallicRoughness/roughnessFactor", Property::roughness, 0},
         {"/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", Property::emissive_strength, 0},
+        {"/materials/0/extensions/KHR_materials_ior/ior", Property::ior, 0},
         {"/materials/0/alphaCutoff", Property::alpha_cutoff, 0},
         {"/materials/0/normalTexture/scale", Property::normal_scale, 0},
         {"/materials/0/occlusionTexture/strength", Property::occlusion_strength, 0},

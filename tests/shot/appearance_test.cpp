@@ -12,7 +12,7 @@ SceneSpec only_scene(const Shot& shot) { return shot.scenes.at(0); }
 TEST_F(Appearance, ReadsMaterialsByName) {
     const SceneSpec scene = only_scene(parse_scene(
         "{ gltf: a.glb, materials: { Paint: { base_color: { keys: { 0 s: [1, 0, 0], 2 s: [0, 0, 1] } }, roughness: 0.25 }, "
-        "\"Tail light\": { emissive: [1, 0.1, 0], emissive_strength: 20 nt, alpha: 0.5, alpha_cutoff: 0.75, metallic: 1, normal_scale: 2 } } }"));
+        "\"Tail light\": { emissive: [1, 0.1, 0], emissive_strength: 20 nt, alpha: 0.5, alpha_cutoff: 0.75, metallic: 1, normal_scale: 2, ior: 1.33 } } }"));
     ASSERT_EQ(scene.materials.size(), 2u);
     const MaterialSpec &paint = scene.materials[0], &tail = scene.materials[1];
     EXPECT_EQ(paint.name, "Paint");
@@ -26,6 +26,7 @@ TEST_F(Appearance, ReadsMaterialsByName) {
     EXPECT_EQ(evaluate(*tail.alpha_cutoff, 0), 0.75);
     EXPECT_EQ(evaluate(*tail.metallic, 0), 1);
     EXPECT_EQ(evaluate(*tail.normal_scale, 0), 2);
+    EXPECT_EQ(evaluate(*tail.ior, 0), 1.33);
 }
 
 TEST_F(Appearance, SwitchesJump) {
@@ -60,7 +61,7 @@ TEST_F(Appearance, Messages) {
     EXPECT_EQ(error_of("materials: red"), R"(shot.yaml:4:29: error: scenes.0.materials is 'red'
     - { gltf: a.glb, materials: red }
                                 ^~~
-  expected a map of names to maps of base_color, metallic, roughness, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale; for example materials: { Paint: { base_color: [0.8, 0.1, 0.1] } })");
+  expected a map of names to maps of base_color, metallic, roughness, ior, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale; for example materials: { Paint: { base_color: [0.8, 0.1, 0.1] } })");
     EXPECT_EQ(error_of("materials: { Paint: red }"), R"(shot.yaml:4:38: error: scenes.0.materials.Paint is 'red'
     - { gltf: a.glb, materials: { Paint: red } }
                                          ^~~
@@ -68,7 +69,11 @@ TEST_F(Appearance, Messages) {
     EXPECT_EQ(error_of("materials: { Paint: { color: red } }"), R"(shot.yaml:4:40: error: unknown key 'color' in scenes.0.materials.Paint
     - { gltf: a.glb, materials: { Paint: { color: red } } }
                                            ^~~~~
-  expected one of base_color, metallic, roughness, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale)");
+  expected one of base_color, metallic, roughness, ior, emissive, emissive_strength, alpha, alpha_cutoff, normal_scale)");
+    EXPECT_EQ(error_of("materials: { Paint: { ior: 0.9 } }"), R"(shot.yaml:4:45: error: scenes.0.materials.Paint.ior is 0.9
+    - { gltf: a.glb, materials: { Paint: { ior: 0.9 } } }
+                                                ^~~
+  expected at least 1)");
     EXPECT_EQ(error_of("materials: { Paint: { base_color: [1, 0, 2] } }"), R"(shot.yaml:4:59: error: scenes.0.materials.Paint.base_color[2] is 2
     - { gltf: a.glb, materials: { Paint: { base_color: [1, 0, 2] } } }
                                                               ^

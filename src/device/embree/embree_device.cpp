@@ -226,21 +226,23 @@ private:
                     beauty.g += r.radiance[1][slot] * w;
                     beauty.b += r.radiance[2][slot] * w;
                     beauty.alpha += r.alpha[slot] * w;
-                    if (job.surface_layers) add_surface(r, slot, film.surface(x, y));
+                    if (job.surface_layers) film.add_surface(x, y, surface_of(r, slot));
                 }
             }
     }
 
-    static void add_surface(const TileResult& r, int slot, Film::Surface& surface) {
+    static Film::Surface surface_of(const TileResult& r, int slot) {
         const float light = r.light[slot];
+        Film::Surface surface;
         for (int c = 0; c < 3; ++c) {
-            surface.albedo[c] += r.albedo[c][slot] * light;
-            surface.normal[c] += r.normal[c][slot] * light;
+            surface.albedo[c] = r.albedo[c][slot] * light;
+            surface.normal[c] = r.normal[c][slot] * light;
         }
-        for (int c = 0; c < 2; ++c) surface.motion[c] += r.motion[c][slot] * light;
-        if (!std::isfinite(r.depth[slot])) return;
-        surface.depth += r.depth[slot] * light;
-        surface.depth_weight += light;
+        for (int c = 0; c < 2; ++c) surface.motion[c] = r.motion[c][slot] * light;
+        if (!std::isfinite(r.depth[slot])) return surface;
+        surface.depth = r.depth[slot] * light;
+        surface.depth_weight = light;
+        return surface;
     }
 
     int width_;

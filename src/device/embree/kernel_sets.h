@@ -17,21 +17,24 @@ namespace kadr {
 namespace kernel_sets {
 using namespace kernels::requirement;
 
-inline constexpr std::array kPlainPath{0u, kEmitters, kTransforms, kTransforms | kEmitters};
+inline constexpr unsigned kSmooth = kMirrors | kIor;
+inline constexpr std::array kPlainPath{0u, kEmitters, kTransforms, kTransforms | kEmitters, kSmooth | kTransforms | kEmitters};
 inline constexpr std::array kMapsPath{kMaps,
                                       kMaps | kEmitters,
                                       kMaps | kTransforms,
                                       kMaps | kTransforms | kEmitters,
+                                      kMaps | kSmooth | kTransforms | kEmitters,
                                       kMaps | kSpecials | kEmitters,
                                       kMaps | kSpecials | kTransforms | kEmitters,
                                       kAll};
-/// Without kEmitters: the analytic model meets no lights.
+/// Without kEmitters and kMirrors: the analytic model meets no lights and has no narrower lobes. Indices of refraction are
+/// in the largest set.
 inline constexpr std::array kDirect{0u,
                                     kTransforms,
                                     kMaps,
                                     kMaps | kTransforms,
                                     kMaps | kSpecials | kTransforms,
-                                    kAll & ~kEmitters};
+                                    kAll & ~kEmitters & ~kMirrors};
 
 constexpr bool holds(unsigned set, unsigned needs) { return (needs & ~set) == 0; }
 

@@ -30,7 +30,7 @@ struct Sums {
         : beauty(pixels(film)), samples(pixels(film)), weights(film.weighted() ? pixels(film) : 0) {}
     static std::size_t pixels(const Film& film) { return static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()); }
 
-    kernels::FilmView view() { return {beauty.data(), samples.data(), weights.empty() ? nullptr : weights.data(), nullptr}; }
+    kernels::FilmView view() { return {beauty.data(), samples.data(), weights.empty() ? nullptr : weights.data(), nullptr, nullptr, nullptr, nullptr, nullptr}; }
     void add_to(Film& film, int half) const {
         for (int y = 0; y < film.height(); ++y)
             for (int x = 0; x < film.width(); ++x) {

@@ -3,9 +3,7 @@
 namespace kadr {
 namespace {
 
-static_assert(sizeof(kernels::FilmBeauty) == sizeof(Film::Beauty) &&
-                  sizeof(kernels::FilmSurface) == sizeof(Film::Surface),
-              "the sums of the kernels are those of the film");
+static_assert(sizeof(kernels::FilmBeauty) == sizeof(Film::Beauty), "the sums of the kernels are those of the film");
 
 void add(const kernels::FilmBeauty& from, Film::Beauty& to) {
     to.r += from.r;
@@ -14,15 +12,7 @@ void add(const kernels::FilmBeauty& from, Film::Beauty& to) {
     to.alpha += from.alpha;
 }
 
-void add(const kernels::FilmSurface& from, Film::Surface& to) {
-    for (int c = 0; c < 3; ++c) {
-        to.albedo[c] += from.albedo[c];
-        to.normal[c] += from.normal[c];
-    }
-    to.depth += from.depth;
-    to.depth_weight += from.depth_weight;
-    for (int c = 0; c < 2; ++c) to.motion[c] += from.motion[c];
-}
+void set(double (&to)[3], const kernels::FilmVector& from) { to[0] = from.x, to[1] = from.y, to[2] = from.z; }
 
 /// An array of rows from `y0` on, addressed as if it began with the first row of the image.
 template <class T>
@@ -51,20 +41,32 @@ void GpuFilm::begin(const Film& film, int y0, int y1) {
     y0_ = y0;
     y1_ = y1;
     weighted_ = film.weighted();
-    layered_ = film.layers().any_surface();
+    layers_ = film.layers();
     take(beauty_, true);
     take(samples_, true);
     take(weights_, weighted_);
-    take(surface_, layered_);
+    take(albedo_, layers_.albedo);
+    take(normal_, layers_.normal);
+    take(depth_, layers_.depth);
+    take(hits_, keeps_hits());
+    take(motion_, layers_.motion);
 }
 
 kernels::FilmView GpuFilm::view() const {
-    return {shifted(beauty_, width_, y0_, true), shifted(samples_, width_, y0_, true),
-            shifted(weights_, width_, y0_, weighted_), shifted(surface_, width_, y0_, layered_)};
+    const auto at = [&](const auto& buffer, bool wanted) { return shifted(buffer, width_, y0_, wanted); };
+    return {at(beauty_, true),
+            at(samples_, true),
+            at(weights_, weighted_),
+            at(albedo_, layers_.albedo),
+            at(normal_, layers_.normal),
+            at(depth_, layers_.depth),
+            at(hits_, keeps_hits()),
+            at(motion_, layers_.motion)};
 }
 
 template <class T>
-const T* GpuFilm::read_back(const DeviceBuffer<T>& buffer, std::size_t& offset) {
+const T* GpuFilm::read_back(const DeviceBuffer<T>& buffer, bool wanted, std::size_t& offset) {
+    if (!wanted) return nullptr;
     const std::size_t bytes = static_cast<std::size_t>(width_) * static_cast<std::size_t>(y1_ - y0_) * sizeof(T);
     std::byte* to = pinned_.data() + offset;
     offset += bytes;
@@ -74,17 +76,21 @@ const T* GpuFilm::read_back(const DeviceBuffer<T>& buffer, std::size_t& offset) 
 
 void GpuFilm::add_to(Film& film, int half) {
     const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(y1_ - y0_);
-    const std::size_t bytes =
-        count * (sizeof(kernels::FilmBeauty) + sizeof(unsigned) + sizeof(double) + sizeof(kernels::FilmSurface));
+    const std::size_t bytes = count * Film::bytes_per_pixel(layers_, 1, weighted_);
     if (pinned_.bytes() < bytes) {
         pinned_ = {};
         pinned_ = PinnedMemory(memory_.runtime(), bytes);
     }
     std::size_t offset = 0;
-    const kernels::FilmBeauty* beauty = read_back(beauty_, offset);
-    const unsigned* samples = read_back(samples_, offset);
-    const double* weights = weighted_ ? read_back(weights_, offset) : nullptr;
-    const kernels::FilmSurface* surface = layered_ ? read_back(surface_, offset) : nullptr;
+    // By their alignment: those of 8 bytes before those of 4.
+    const kernels::FilmBeauty* beauty = read_back(beauty_, true, offset);
+    const double* weights = read_back(weights_, weighted_, offset);
+    const kernels::FilmVector* albedo = read_back(albedo_, layers_.albedo, offset);
+    const kernels::FilmVector* normal = read_back(normal_, layers_.normal, offset);
+    const double* depth = read_back(depth_, layers_.depth, offset);
+    const double* hits = read_back(hits_, keeps_hits(), offset);
+    const kernels::FilmMotion* motion = read_back(motion_, layers_.motion, offset);
+    const unsigned* samples = read_back(samples_, true, offset);
     stream_.synchronize("render on the GPU");
     std::size_t i = 0;
     for (int y = y0_; y < y1_; ++y)
@@ -92,7 +98,14 @@ void GpuFilm::add_to(Film& film, int half) {
             add(beauty[i], film.beauty(x, y, half));
             film.samples(x, y, half) += samples[i];
             if (weights) film.weight(x, y, half) += weights[i];
-            if (surface) add(surface[i], film.surface(x, y));
+            if (!layers_.any_surface()) continue;
+            Film::Surface surface;
+            if (albedo) set(surface.albedo, albedo[i]);
+            if (normal) set(surface.normal, normal[i]);
+            if (depth) surface.depth = depth[i];
+            if (hits) surface.depth_weight = hits[i];
+            if (motion) surface.motion[0] = motion[i].x, surface.motion[1] = motion[i].y;
+            film.add_surface(x, y, surface);
         }
 }
 
@@ -101,7 +114,11 @@ bool GpuFilm::give_back() {
     beauty_ = {};
     samples_ = {};
     weights_ = {};
-    surface_ = {};
+    albedo_ = {};
+    normal_ = {};
+    depth_ = {};
+    hits_ = {};
+    motion_ = {};
     return true;
 }
 

@@ -26,16 +26,20 @@ private:
     template <class T>
     void take(DeviceBuffer<T>& buffer, bool wanted);
     template <class T>
-    const T* read_back(const DeviceBuffer<T>& buffer, std::size_t& offset);
+    const T* read_back(const DeviceBuffer<T>& buffer, bool wanted, std::size_t& offset);
+    bool keeps_hits() const { return layers_.depth || layers_.motion; }
 
     GpuMemory& memory_;
     const GpuStream& stream_;
     int width_ = 0, y0_ = 0, y1_ = 0;
-    bool weighted_ = false, layered_ = false;
+    bool weighted_ = false;
+    FilmLayers layers_;
     DeviceBuffer<kernels::FilmBeauty> beauty_;
     DeviceBuffer<unsigned> samples_;
     DeviceBuffer<double> weights_;
-    DeviceBuffer<kernels::FilmSurface> surface_;
+    DeviceBuffer<kernels::FilmVector> albedo_, normal_;
+    DeviceBuffer<double> depth_, hits_;
+    DeviceBuffer<kernels::FilmMotion> motion_;
     PinnedMemory pinned_;
 };
 

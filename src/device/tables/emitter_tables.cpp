@@ -47,7 +47,7 @@ template <class T>
 void EmitterTablesOf<T>::set(const SceneSnapshot& snapshot, const kernels::SceneViewOf<T>& view) {
     triangles_.clear();
     cdf_.clear();
-    instance_density_.assign(snapshot.instances.size(), T(0));
+    instance_density_.clear();
     std::map<int, float> texture_means;
     std::vector<double> cumulative{0.0};
     std::vector<Place> places;
@@ -59,11 +59,15 @@ void EmitterTablesOf<T>::set(const SceneSnapshot& snapshot, const kernels::Scene
             texture_means[texture] = average_luminance(view.textures, material.emissive_texture);
         const double strength = kernels::luminance(material.emission) * texture_means[texture];
         if (!(strength > 0)) continue;
+        if (instance_density_.empty()) instance_density_.assign(snapshot.instances.size(), T(0));
         instance_density_[i] = static_cast<T>(strength);
         add_instance(snapshot, view, i, strength, cumulative, places);
     }
     emitted_power_ = static_cast<T>(cumulative.back());
-    if (cumulative.back() > 0) normalise(cumulative, places);
+    if (cumulative.back() > 0)
+        normalise(cumulative, places);
+    else
+        instance_density_.clear();
 }
 
 template <class T>

@@ -1,12 +1,27 @@
 #include "device/tables/material_table.h"
 
+#include "device/tables/least_green.h"
+#include "kernels/bsdf/ggx.h"
+
 namespace kadr {
 namespace {
 
 bool is_zero(const kernels::Vec3f& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-/// The kernels::requirement bits of a material.
-unsigned requirements_of(const kernels::Material& m) {
+/// The kernels::requirement bits of how a material reflects.
+/// @param least_roughness  at any point of it
+unsigned needs_of_lobe(const kernels::Material& m, float least_roughness) {
+    using namespace kernels::requirement;
+    if (m.unlit) return 0;
+    constexpr float kRounding = 1 - 1e-5f;  // of a lookup between texels
+    const float roughness = least_roughness * kRounding;
+    unsigned needs = roughness * roughness < kernels::kMinAlpha ? kMirrors : 0;
+    if (m.dielectric_f0 != kernels::kDielectricF0) needs |= kIor;
+    return needs;
+}
+
+/// The kernels::requirement bits of what a material is covered with.
+unsigned needs_of_maps(const kernels::Material& m) {
     using namespace kernels::requirement;
     const bool emits = !is_zero(m.emission);  // else its texture is multiplied by nothing
     unsigned needs = m.unlit || m.alpha_mode != kernels::AlphaMode::opaque ? kMaps | kSpecials : 0;
@@ -45,11 +60,26 @@ void MaterialTable::note_shown(const SceneSnapshot& snapshot, std::span<const ke
     shown_.clear();
     for (unsigned material = 0; material < seen.size(); ++material)
         if (seen[material]) shown_.push_back(material);
+    least_green_.resize(scene_.textures.size());
+    for (const unsigned material : shown_) {
+        const int texture = data()[material].metallic_roughness_texture.texture;
+        if (texture < 0) continue;
+        std::optional<float>& least = least_green_[static_cast<std::size_t>(texture)];
+        if (!least) least = least_green(scene_.textures[static_cast<std::size_t>(texture)]);
+    }
+}
+
+float MaterialTable::least_roughness(const kernels::Material& material) const {
+    const int texture = material.metallic_roughness_texture.texture;
+    return texture < 0 ? material.roughness : material.roughness * *least_green_[static_cast<std::size_t>(texture)];
 }
 
 unsigned MaterialTable::requirements() const {
     unsigned needs = shows_colors_ ? kernels::requirement::kMaps | kernels::requirement::kSpecials : 0;
-    for (const unsigned material : shown_) needs |= requirements_of(data()[material]);
+    for (const unsigned material : shown_) {
+        const kernels::Material& m = data()[material];
+        needs |= needs_of_maps(m) | needs_of_lobe(m, least_roughness(m));
+    }
     return needs;
 }
 

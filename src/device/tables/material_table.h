@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,14 +27,18 @@ public:
 
     const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
     std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }
-    /// What is shown needs of requirement::kMaps and kSpecials.
+    /// What is shown needs of requirement::kMaps, kSpecials, kMirrors and kIor.
     unsigned requirements() const;
 
 private:
+    /// At any point of a material that is shown.
+    float least_roughness(const kernels::Material& material) const;
+
     const Scene& scene_;
     std::vector<kernels::Material> materials_;  ///< of the snapshot; empty: the scene's
     std::vector<kernels::Vec3f> emissions_;     ///< [material] of the frame before
     std::vector<unsigned> shown_;               ///< materials, each once
+    std::vector<std::optional<float>> least_green_;  ///< [texture] of those that are roughness on what was shown
     bool shows_colors_ = false;
 };
 
