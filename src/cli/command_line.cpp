@@ -233,7 +233,7 @@ void Parser::add_set(CLI::App* app) {
 }
 
 void Parser::add_device(CLI::App* app) {
-    app->add_option("--device", raw_.device, "auto, cpu, hiprt or hiprt:N (a GPU by number)")->capture_default_str();
+    app->add_option("--device", raw_.device, "auto, cpu, hiprt, hiprt:N (a GPU by number) or hiprt:N,M (render: frames are dealt out to several)")->capture_default_str();
     app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)");
 }
 

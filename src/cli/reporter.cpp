@@ -55,9 +55,18 @@ std::string sampling_text(const SamplingReport& s) {
     return text;
 }
 
+/// ", made ahead; memory was short: the film comes in parts".
+std::string memory_text(const DeviceStatistics& device) {
+    std::string text = device.staged > 0 ? ", made ahead" : "";
+    if (!device.memory_steps.empty()) text += "; memory was short: " + device.memory_steps;
+    return text;
+}
+
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
-    return fmt::format("  kernel needs {}, compiled for {}\n"
+    const std::string by = report.device_name.empty() ? "" : fmt::format("  {}{}\n", report.device_name, memory_text(device));
+    return by +
+           fmt::format("  kernel needs {}, compiled for {}\n"
                        "  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
                        "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}\n  samples a pixel {}",
                        names_of_requirements(device.required), names_of_requirements(device.compiled), device.rays,
@@ -196,6 +205,7 @@ Json statistics_json(const DeviceStatistics& device) {
             {"set_frame_s", device.set_frame_s}, {"render_s", device.render_s},
             {"instances", device.instances}, {"moving_instances", device.moving_instances},
             {"flattened_triangles", device.flattened_triangles},
+            {"made_ahead", device.staged}, {"memory_steps", device.memory_steps},
             {"structures",
              {{"built", device.structures.built}, {"updated", device.structures.updated}, {"kept", device.structures.kept}}}};
 }
@@ -260,6 +270,7 @@ public:
     void frame_done(const FrameReport& report) override {
         Json frame = frame_json(report);
         if (!report.shot.empty()) frame["shot"] = report.shot;
+        if (!report.device_name.empty()) frame["device_name"] = report.device_name;
         if (stats_) frame["device"] = statistics_json(report.device);
         line(frame);
     }

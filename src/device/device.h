@@ -24,6 +24,9 @@ struct Pass {
     int total_samples = 0;                          ///< of the frame; 1 under `direct`: pixel centres, pinhole, no blur
     const std::atomic<bool>* cancel = nullptr;      ///< set: return early (film is then incomplete)
     std::function<void(double fraction)> progress;  ///< 0..1, called from any thread, rarely
+    /// Called by the thread of render(), now and then, while it has nothing to do but wait for the device; may call
+    /// Device::stage. Not called by devices that do not wait.
+    std::function<void()> idle;
 };
 
 /// What set_frame did to the acceleration structures: of meshes, of what is flattened, and of all instances together.
@@ -38,6 +41,8 @@ struct DeviceStatistics {
     unsigned compiled = 0;  ///< those that its kernel is compiled for
     std::uint64_t pixel_samples = 0, rays = 0, dropped_samples = 0;
     double load_s = 0, set_frame_s = 0, render_s = 0;
+    std::uint64_t staged = 0;  ///< set_frame found its work done while the frame before rendered
+    std::string memory_steps;  ///< what was given up because memory was short, since load; empty: nothing
     std::uint64_t flattened_triangles = 0, instances = 0, moving_instances = 0;
     StructureCounts structures;
 };
@@ -49,7 +54,14 @@ struct BuildSettings {
     bool operator==(const BuildSettings&) const = default;
 };
 
-/// A renderer on some hardware: three calls, and no back-end type across them.
+/// A renderer on some hardware: a few calls, and no back-end type across them.
+///
+/// A device may keep the sums of a film where it renders, and brings them home when it is asked:
+///
+///     device.set_frame(snapshot);
+///     device.begin_film(film);
+///     while (...) device.render(pass, film);
+///     device.read_film(film);
 class Device {
 public:
     virtual ~Device() = default;
@@ -58,7 +70,16 @@ public:
     /// copied.
     virtual void load(const Scene& scene, const Image* environment, const BuildSettings& build = {}) = 0;
     virtual void set_frame(const SceneSnapshot& snapshot) = 0;
-    virtual void render(const Pass& pass, Film& film) = 0;  ///< adds to the film
+    /// What set_frame will be given next, if all goes well: the very object. A device may make it ready while it renders.
+    /// What goes wrong with it is said by set_frame.
+    virtual void stage(const std::shared_ptr<const SceneSnapshot>&) {}
+    /// The film was cleared, and what comes is for it; sums of another that were not read are forgotten. The film stays
+    /// where it is until the next call of begin_film.
+    virtual void begin_film(Film&) {}
+    /// Adds samples to the film, whose sums are looked at after read_film alone.
+    virtual void render(const Pass& pass, Film& film) = 0;
+    /// Brings home what render() has added so far; more may be added after that.
+    virtual void read_film(Film&) {}
     virtual DeviceStatistics statistics() const = 0;
     /// Single rays, of devices that answer them; else null. Lives as long as the device.
     virtual Probe* probe() { return nullptr; }
@@ -72,7 +93,7 @@ enum class KernelChoice : std::uint8_t {
 };
 
 struct DeviceRequest {
-    std::string name = "auto";  ///< auto | cpu | hiprt
+    std::string name = "auto";  ///< auto | cpu | hiprt | hiprt:1 | hiprt:0,1
     int threads = 0;            ///< 0: as many as the machine gives
     int width = 0;              ///< lanes; 0: KADR_WIDTH, else what the processor has
     KernelChoice kernels = KernelChoice::by_environment;
@@ -93,6 +114,9 @@ struct DeviceReport {
 
 /// @throws InputError  for an unknown name or a device that is not usable, with the reason
 DeviceChoice make_device(const DeviceRequest& request);
+/// The same for a request that may name several GPUs ("hiprt:0,1"): frames can be dealt out to them.
+/// @throws InputError  as make_device; for a GPU that is named twice
+std::vector<DeviceChoice> make_devices(const DeviceRequest& request);
 std::vector<DeviceReport> list_devices();
 
 }  // namespace kadr

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <variant>
 
@@ -52,19 +54,32 @@ std::string processor_name() {
     return "unknown processor";
 }
 
-/// The GPU of "hiprt" or "hiprt:2"; none for other names.
-/// @throws InputError  for a list of GPUs, or what is no number
-std::optional<int> gpu_number(const std::string& name) {
-    if (name == "hiprt") return 0;
-    if (!name.starts_with("hiprt:")) return std::nullopt;
-    const std::string number = name.substr(6);
-    if (number.find(',') != std::string::npos)
-        throw InputError(fmt::format("--device {}: frames are not dealt out to several GPUs yet", name), "name one, as in hiprt:0");
+[[noreturn]] void refuse_number(const std::string& name) {
+    throw InputError(fmt::format("--device is '{}'", name), "expected the number of a GPU, as in hiprt:0, or several, as in hiprt:0,1; see kadr devices");
+}
+
+int number_of(std::string_view text, const std::string& name) {
     int value = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (error != std::errc() || end != number.data() + number.size() || value < 0)
-        throw InputError(fmt::format("--device is '{}'", name), "expected the number of a GPU, as in hiprt:0; see kadr devices");
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < 0) refuse_number(name);
     return value;
+}
+
+/// The GPUs of "hiprt", "hiprt:2" or "hiprt:0,1"; none for other names.
+/// @throws InputError  for what is no number, or is there twice
+std::vector<int> gpu_numbers(const std::string& name) {
+    constexpr std::string_view kPrefix = "hiprt:";
+    if (name == "hiprt") return {0};
+    if (!name.starts_with(kPrefix)) return {};
+    std::vector<int> numbers;
+    for (std::string_view rest = std::string_view(name).substr(kPrefix.size());;) {
+        const std::size_t comma = rest.find(',');
+        numbers.push_back(number_of(rest.substr(0, comma), name));
+        if (std::count(numbers.begin(), numbers.end(), numbers.back()) > 1)
+            throw InputError(fmt::format("--device {}: GPU {} is there twice", name, numbers.back()), "name every GPU once: one renders one frame at a time");
+        if (comma == std::string_view::npos) return numbers;
+        rest.remove_prefix(comma + 1);
+    }
 }
 
 DeviceChoice make_gpu(const std::string& name, int number, KernelChoice kernels) {
@@ -94,13 +109,24 @@ std::string names_of(const std::vector<GpuProperties>& gpus) {
 }  // namespace
 
 DeviceChoice make_device(const DeviceRequest& request) {
-    if (const std::optional<int> gpu = gpu_number(request.name))
-        return make_gpu(request.name, *gpu, choose_kernels(request.kernels));
+    const std::vector<int> gpus = gpu_numbers(request.name);
+    if (gpus.size() > 1)
+        throw InputError(fmt::format("--device {}: only kadr render deals out frames to several GPUs", request.name),
+                         fmt::format("name one, as in hiprt:{}", gpus.front()));
+    if (!gpus.empty()) return make_gpu(request.name, gpus.front(), choose_kernels(request.kernels));
     if (request.name == "auto") return make_best_device(request);
     if (request.name != "cpu")
-        throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu, hiprt or hiprt:NUMBER");
+        throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu, hiprt, hiprt:NUMBER or hiprt:NUMBER,NUMBER");
     return {make_embree_device(request.threads, choose_width(request.width), choose_kernels(request.kernels)),
             "asked for by --device cpu"};
+}
+
+std::vector<DeviceChoice> make_devices(const DeviceRequest& request) {
+    const std::vector<int> gpus = gpu_numbers(request.name);
+    std::vector<DeviceChoice> devices;
+    for (const int gpu : gpus) devices.push_back(make_gpu(request.name, gpu, choose_kernels(request.kernels)));
+    if (devices.empty()) devices.push_back(make_device(request));
+    return devices;
 }
 
 std::vector<DeviceReport> list_devices() {

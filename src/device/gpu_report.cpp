@@ -24,7 +24,9 @@ std::vector<std::string> unproven_on_gpu() {
         "that launches stay below 0.1 s and that Ctrl-C is answered within 0.2 s",
         "the choice of build qualities: high and made small for rigid meshes, fast for bending ones and for all instances",
         "meshes that bend while the shutter is open, which are boxes to HIPRT",
-        "when memory runs out: smaller tiles, structures of lower quality",
+        "that the next frame is copied and built beside the launches of the one before, and what that gains",
+        "frames dealt out to several GPUs",
+        "when memory runs out: one frame at a time, smaller tiles, structures of lower quality",
     };
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -57,6 +58,16 @@ public:
     /// Sum of the samples' shares of the light over the shutter, about 1 each; what sums are divided by instead of the
     /// number of samples. Only when weighted().
     double& weight(int x, int y, int half = 0) { return band(y).weights[half][index(x, y)]; }
+    // Sums of single layers, where they are kept: depth and motion over the samples that hit a surface, whose weight is hits.
+    struct Vector { double x = 0, y = 0, z = 0; };
+    struct Pair { double x = 0, y = 0; };
+    Vector& albedo(int x, int y) { return band(y).albedo[index(x, y)]; }
+    Vector& normal(int x, int y) { return band(y).normal[index(x, y)]; }
+    double& depth(int x, int y) { return band(y).depth[index(x, y)]; }
+    double& hits(int x, int y) { return band(y).hits[index(x, y)]; }
+    Pair& motion(int x, int y) { return band(y).motion[index(x, y)]; }
+    /// The row behind the last one that lies in one piece with row y: sums of [y, end) follow each other.
+    int end_of_band(int y) const { return std::min(height_, static_cast<int>((band_of(y) + 1) << band_shift_)); }
     /// Adds to the sums of the layers that are kept; the others are dropped.
     void add_surface(int x, int y, const Surface& sums);
     /// The sums of the layers that are kept; 0 of the others.
@@ -80,8 +91,6 @@ public:
     static std::size_t bytes_per_pixel(const FilmLayers& layers, int halves, bool weighted);
 
 private:
-    struct Vector { double x = 0, y = 0, z = 0; };
-    struct Pair { double x = 0, y = 0; };
     /// Rows of the film; [y][x] from the band's first row on. What is not kept is empty.
     struct Band {
         std::vector<Beauty> beauty[kHalves];

@@ -68,6 +68,8 @@ void add(DeviceStatistics& sum, const DeviceStatistics& part) {
     sum.dropped_samples += part.dropped_samples;
     sum.load_s = part.load_s;
     sum.set_frame_s += part.set_frame_s;
+    sum.staged += part.staged;
+    if (!part.memory_steps.empty()) sum.memory_steps = part.memory_steps;
     sum.render_s += part.render_s;
     sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
     sum.instances = std::max(sum.instances, part.instances);
@@ -112,8 +114,11 @@ Image FrameRenderer::developed() {
 /// The rounds of samples of one frame.
 class FrameRenderer::Rounds {
 public:
-    Rounds(Device& device, Film& film, const std::vector<SceneSnapshot>& parts, RenderedFrame& frame)
-        : device_(device), film_(film), parts_(parts), weights_(weights_of(parts)), frame_(frame) {}
+    using Parts = std::shared_ptr<const std::vector<SceneSnapshot>>;
+
+    /// @param rounds  there may be more than one
+    Rounds(Device& device, Film& film, Parts parts, const FrameRequest& request, bool rounds, RenderedFrame& frame)
+        : device_(device), film_(film), held_(std::move(parts)), parts_(*held_), weights_(weights_of(parts_)), request_(request), rounds_(rounds), frame_(frame) {}
 
     /// Deals the samples of a round to the parts of the shutter, and those of each part to the halves of the film: both
     /// halves see all parts, as far as there are two samples for them. Every other round goes through the parts backwards,
@@ -122,9 +127,10 @@ public:
         const std::vector<SampleRange> ranges = deal_samples(weights_, count);
         int odd = 0, done = 0;
         for (std::size_t step = 0; step < parts_.size(); ++step) {
-            const std::size_t i = backwards_ ? parts_.size() - 1 - step : step;
+            const std::size_t i = part_at(step);
             if (ranges[i].count == 0) continue;
             set_part(i);
+            next_part_ = part_after(step, ranges);
             const int larger = (ranges[i].count + 1) / 2, smaller = ranges[i].count - larger;
             const int counts[Film::kHalves] = {odd == 0 ? larger : smaller, odd == 0 ? smaller : larger};
             odd ^= ranges[i].count % 2;
@@ -140,6 +146,7 @@ public:
                 pass.cancel = &interrupt_requested();
                 if (progress)
                     pass.progress = [&, done, n = counts[half]](double fraction) { progress((done + fraction * n) / count); };
+                pass.idle = [&] { stage_next(); };
                 device_.render(pass, film_);
                 first_[half] += counts[half];
                 done += counts[half];
@@ -156,6 +163,23 @@ public:
     }
 
 private:
+    std::size_t part_at(std::size_t step) const { return backwards_ ? parts_.size() - 1 - step : step; }
+
+    /// The part that this round goes on with.
+    std::optional<std::size_t> part_after(std::size_t step, const std::vector<SampleRange>& ranges) const {
+        for (++step; step < parts_.size(); ++step)
+            if (ranges[part_at(step)].count > 0) return part_at(step);
+        return std::nullopt;
+    }
+
+    /// While the device renders: tells it what comes next, where that is known. After the last part of a round another one
+    /// may follow, which begins with this part and goes on to the one before.
+    void stage_next() {
+        if (next_part_) return device_.stage({held_, &parts_[*next_part_]});
+        if (!request_.next || (rounds_ && parts_.size() > 1)) return;
+        if (const std::shared_ptr<const SceneSnapshot> next = request_.next()) device_.stage(next);
+    }
+
     void set_part(std::size_t i) {
         if (part_ == i) return;
         gather();
@@ -166,10 +190,13 @@ private:
 
     Device& device_;
     Film& film_;
+    const Parts held_;
     const std::vector<SceneSnapshot>& parts_;
     const std::vector<double> weights_;
+    const FrameRequest& request_;
+    const bool rounds_;
     RenderedFrame& frame_;
-    std::optional<std::size_t> part_;
+    std::optional<std::size_t> part_, next_part_;
     bool backwards_ = false;
     int first_[Film::kHalves] = {0, 0};
 };
@@ -181,17 +208,19 @@ FrameRenderer::FrameRenderer(Device& device, std::function<double()> clock) : de
 RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request) {
     stop_if_interrupted();
     const Stopwatch watch;
-    RenderedFrame frame = render(shot, make_snapshots(shot, time), request);
+    RenderedFrame frame = render(shot, std::make_shared<const std::vector<SceneSnapshot>>(make_snapshots(shot, time)), request);
     frame.time_s = time.time_s();
     frame.seconds = watch.seconds();
     return frame;
 }
 
-RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FrameRequest& request) {
+RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::shared_ptr<const std::vector<SceneSnapshot>>& held, const FrameRequest& request) {
     stop_if_interrupted();
     check_frame_memory(shot.shot());
     const Stopwatch watch;
+    const std::vector<SceneSnapshot>& parts = *held;
     RenderedFrame frame;
+    frame.device = device_->name();
     frame.motion = motion_report(shot, parts);
     const RenderSpec& spec = shot.shot().render;
     const double begin_s = clock_(), scale = exposure_factor(shot.shot().shutter, shot.timing().fps);
@@ -203,13 +232,22 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::vector<Sce
     const bool steered = spec.max_error || std::isfinite(budget_s);
     const std::vector<SampleRange> all = deal_samples(weights_of(parts), spec.samples);
     Film& film = cleared_film(shot.shot(), layers_to_render(request.layers, spec), film_halves(spec, parts.size()), needs_weights(parts, all, spec.samples) || (steered && parts.size() > 1));
-    Rounds rounds(*device_, film, parts, frame);
-    for (int count = 0, first = 0; (count = steering.next_round(film)) > 0; first += count) {
+    device_->begin_film(film);
+    Rounds rounds(*device_, film, held, request, steered, frame);
+    const auto next_round = [&] {
+        if (steering.looks_at_film()) device_->read_film(film);
+        return steering.next_round(film);
+    };
+    for (int count = 0, first = 0; (count = next_round()) > 0; first += count) {
         const double before = steered ? static_cast<double>(first) / spec.samples : 0, part = static_cast<double>(count) / (steered ? spec.samples : count);
         const auto progress = [&](double fraction) { request.progress(before + fraction * part); };
         rounds.render(count, steering.active(), spec.samples == 1, request.progress ? progress : std::function<void(double)>());
-        if (first == 0 && request.budget_s) steering.set_budget(request.budget_s(difficulty_of(film, scale, clock_() - begin_s)));
+        if (first == 0 && request.budget_s) {
+            device_->read_film(film);
+            steering.set_budget(request.budget_s(difficulty_of(film, scale, clock_() - begin_s)));
+        }
     }
+    device_->read_film(film);
     rounds.gather();
     frame.sampling = report_sampling(film, steering.stopped_by(), view, scale);
     frame.image = developed();

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "device/device.h"
 #include "film/film.h"
@@ -14,6 +17,7 @@ namespace kadr {
 /// One frame as it comes from the device: linear radiance and layers.
 struct RenderedFrame {
     Image image;
+    std::string device;            ///< that rendered it
     DeviceStatistics statistics;   ///< summed over the parts of the shutter
     MotionReport motion;
     SamplingReport sampling;
@@ -30,6 +34,8 @@ struct FrameRequest {
     /// Wall time for the frame, asked for after its first round; `difficulty` is error times time, which more samples do not
     /// change. Absent: the shot's budget.
     std::function<double(double difficulty)> budget_s;
+    /// What will be rendered after this frame; null while nobody knows. Asked while the device is busy.
+    std::function<std::shared_ptr<const SceneSnapshot>()> next;
 };
 
 /// The layers that a shot asks for.
@@ -47,7 +53,7 @@ public:
     /// @throws Interrupted  when a signal asked to stop before the frame was complete
     RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request);
     /// The same of a frame that is evaluated already. @param parts  make_snapshots of the frame
-    RenderedFrame render(const BoundShot& shot, const std::vector<SceneSnapshot>& parts, const FrameRequest& request);
+    RenderedFrame render(const BoundShot& shot, const std::shared_ptr<const std::vector<SceneSnapshot>>& parts, const FrameRequest& request);
 
 private:
     class Rounds;

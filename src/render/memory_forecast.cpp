@@ -50,31 +50,32 @@ double bytes_of_trees(const Scene& scene) {
     return bytes;
 }
 
-/// What snapshots share is there once, their own entries in each.
+/// What snapshots share is there once, their own entries in each of `held` frames.
 template <class T>
-double bytes_of(const std::vector<SceneSnapshot>& parts, SharedList<T> SceneSnapshot::*list) {
+double bytes_of(const std::vector<SceneSnapshot>& parts, double held, SharedList<T> SceneSnapshot::*list) {
     double bytes = static_cast<double>((parts.front().*list).shared_size() * sizeof(T));
-    for (const SceneSnapshot& part : parts) bytes += bytes_of((part.*list).own());
+    for (const SceneSnapshot& part : parts) bytes += held * bytes_of((part.*list).own());
     return bytes;
 }
 template <class T>
-double bytes_of(const std::vector<SceneSnapshot>& parts, SharedList<T> MotionFrames::*list) {
+double bytes_of(const std::vector<SceneSnapshot>& parts, double held, SharedList<T> MotionFrames::*list) {
     double bytes = static_cast<double>((parts.front().motion.*list).shared_size() * sizeof(T));
-    for (const SceneSnapshot& part : parts) bytes += bytes_of((part.motion.*list).own());
+    for (const SceneSnapshot& part : parts) bytes += held * bytes_of((part.motion.*list).own());
     return bytes;
 }
 
-double bytes_of_motion(const std::vector<SceneSnapshot>& parts) {
-    return bytes_of(parts, &SceneSnapshot::instances) + bytes_of(parts, &SceneSnapshot::fixed_places) + bytes_of(parts, &MotionFrames::headers) +
-           bytes_of(parts, &MotionFrames::types) + bytes_of(parts, &MotionFrames::srt) + bytes_of(parts, &MotionFrames::matrices) + bytes_of(parts, &MotionFrames::linear);
+double bytes_of_motion(const std::vector<SceneSnapshot>& parts, double held) {
+    return bytes_of(parts, held, &SceneSnapshot::instances) + bytes_of(parts, held, &SceneSnapshot::fixed_places) + bytes_of(parts, held, &MotionFrames::headers) +
+           bytes_of(parts, held, &MotionFrames::types) + bytes_of(parts, held, &MotionFrames::srt) + bytes_of(parts, held, &MotionFrames::matrices) +
+           bytes_of(parts, held, &MotionFrames::linear);
 }
 
-/// Vertices of the frame, and those of the frame before that the device and the cache hold until they are replaced.
-double bytes_of_bending(const std::vector<SceneSnapshot>& parts) {
+/// Vertices of the frames held, and those of the frame before that the device and the cache hold until they are replaced.
+double bytes_of_bending(const std::vector<SceneSnapshot>& parts, double held) {
     double bytes = 0;
     for (const SceneSnapshot& part : parts)
         for (const auto& mesh : part.deformed) bytes += bytes_of(mesh->vertices) + bytes_of(mesh->tangents);
-    return 2 * bytes;
+    return (1 + held) * bytes;
 }
 
 /// Triangles that shine, as next-event estimation chooses among them: the entry, its share and, while the table is made,
@@ -162,9 +163,10 @@ private:
         }
         add("vertices", "as rays find them, beside the files' own", {0, most.vertices, most.vertices, most.vertices});
         add("structures", "over triangles", {0, most.structures + most.building, most.structures, most.structures});
-        const double motion = bytes_of_motion(parts_);
+        const double held = extent_.frames > 1 ? 2 : 1;  // the next frame is evaluated while one renders
+        const double motion = bytes_of_motion(parts_, held);
         add("instances", fmt::format("{} and their motion", parts_.front().instances.size()), {0, motion, motion + most.instances + most.instances_building, motion + most.instances});
-        if (const double bending = bytes_of_bending(parts_); bending > 0) add("bending", "vertices of meshes that bend", {0, bending, bending, bending});
+        if (const double bending = bytes_of_bending(parts_, held); bending > 0) add("bending", "vertices of meshes that bend", {0, bending, bending, bending});
         if (emitters > 0) add("lights", "triangles that shine", {0, 0, emitters, emitters});
     }
 

@@ -63,7 +63,7 @@ ViewSpec PreviewSession::view(double time_s) {
 RenderedFrame PreviewSession::render(const BoundShot& shot, const FrameTime& time, const FilmLayers& layers,
                                      int frames_left) {
     RenderedFrame frame = renderer_.render(
-        shot, time, {layers, view_at(view_, time.time_s()), [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); }, {}});
+        shot, time, {layers, view_at(view_, time.time_s()), [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); }, {}, {}});
     report_.samples += frame.statistics.pixel_samples;
     report_.sampling = frame.sampling;
     report_.dropped += frame.statistics.dropped_samples;

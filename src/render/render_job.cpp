@@ -1,7 +1,10 @@
 #include "render/render_job.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
+#include <future>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -14,12 +17,11 @@
 #include "output/image_io.h"
 #include "render/delivery.h"
 #include "render/denoising.h"
-#include "render/environment_image.h"
 #include "render/frame_cache.h"
+#include "render/frame_farm.h"
 #include "render/frame_identity.h"
-#include "render/frame_renderer.h"
+#include "render/frame_schedule.h"
 #include "render/loaded_shot.h"
-#include "render/shot_budget.h"
 #include "render/output_plan.h"
 #include "render/prepared_shot.h"
 #include "render/stopwatch.h"
@@ -50,22 +52,28 @@ int first_frame_of_shot(const RenderOptions& options, const LoadedShot& loaded) 
     return BoundShot(shot, loaded.scene()).timing().frames.front();
 }
 
-/// One call of render_shot: members in the order in which they come to be.
+/// One call of render_shot: members in the order in which they come to be. Frames are evaluated by one thread and rendered
+/// by one for each device; this one delivers them in their order.
 class RenderJob {
 public:
     RenderJob(PreparedShot prepared, const RenderOptions& options, const RenderEvents& events);
     RenderSummary run();
 
 private:
+    using Rendered = FrameTask::Rendered;
+
     void warn(const std::vector<Diagnostic>& warnings);
     void open_output();
-    void deliver(int frame, int frames_left);
     bool is_complete(const std::vector<std::filesystem::path>& files, const FrameIdentity& identity) const;
-    Hash key_of(const std::vector<SceneSnapshot>& parts, const ViewSpec& view) const;
-    FrameCache::Found find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left);
-    void render(DeliveryItem& item, const FrameTime& time, int frames_left);
-    void load_device();
-    ViewSpec view_with_exposure(const FrameTime& time);
+    Hash key_of(const std::vector<SceneSnapshot>& parts, const FrameTime& time) const;
+    FrameSchedule::Task evaluate(std::size_t index);
+    void find_same(const FrameSchedule::Task& task);
+    void keep(const FrameTask& task, const Rendered& frame);
+    Rendered wait_for(const FrameTask& task) const;
+    void deliver(const FrameTask& task);
+    void describe(DeliveryItem& item, const FrameTask& task, const Rendered& frame);
+    void deliver_all();
+    void deliver_finished() noexcept;
     void report_written();
     void warn_of_motion(const FrameReport& report);
     void finish();
@@ -75,38 +83,41 @@ private:
     const bool view_wanted_;
     Stopwatch total_;
     RenderSummary summary_;
+    std::vector<DeviceChoice> devices_;   ///< until the farm has them
     std::optional<LoadedShot> loaded_;
     std::optional<VideoPlan> video_;
     std::optional<ShotIdentity> identity_;
-    int metered_frame_ = 0;
-    DeviceChoice device_;
-    bool device_loaded_ = false;
-    std::optional<FrameRenderer> renderer_;
     std::set<std::string> astray_;  ///< what has been warned of
+    std::mutex cache_mutex_;
     FrameCache cache_{kMostCachedBytes};
+    std::vector<FrameSchedule::Task> under_way_;   ///< evaluated, not yet in the cache
     double relmse_sum_ = 0;
     int relmse_frames_ = 0;
-    ShotBudget budget_;
-    std::optional<double> exposure_;
     std::optional<Delivery> delivery_;
+    std::optional<FrameSchedule> schedule_;
+    std::optional<FrameFarm> farm_;
 };
 
 RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const RenderEvents& events)
     : options_(options), events_(events), view_wanted_(prepared.view_wanted) {
     Shot& shot = prepared.shot;
-    device_ = make_device(options.device);
+    devices_ = make_devices(options.device);
     open_image_io_in_background();
     if (shot.output.video)
         video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
     loaded_.emplace(std::move(shot));
     denoiser_of(loaded_->shot().render);  // a missing one is known before anything is written
+    FrameFarm::Settings settings;
     if (loaded_->shot().view.automatic)
-        metered_frame_ = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
-    identity_.emplace(*loaded_, metered_frame_);
-    renderer_.emplace(*device_.device);
-    budget_ = ShotBudget(loaded_->shot().render.time_budget_shot_s, [this] { return total_.seconds(); });
-    summary_.device = device_.device->name();
-    summary_.device_why = device_.why;
+        settings.metered_frame = prepared.metered_frame ? *prepared.metered_frame : first_frame_of_shot(options, *loaded_);
+    identity_.emplace(*loaded_, settings.metered_frame);
+    settings.frames = loaded_->bound().timing().frames.size();
+    settings.clock = [this] { return total_.seconds(); };
+    settings.progress = events_.frame_progress;
+    settings.rendered = [this](const FrameTask& task, const Rendered& frame) { keep(task, frame); };
+    farm_.emplace(*loaded_, std::move(devices_), std::move(settings));
+    summary_.device = farm_->names();
+    summary_.device_why = farm_->why();
     summary_.times.load = total_.seconds();
 }
 
@@ -134,95 +145,101 @@ bool RenderJob::is_complete(const std::vector<std::filesystem::path>& files, con
     });
 }
 
-/// On the first frame that has to be rendered: a run that finds every frame complete builds nothing.
-void RenderJob::load_device() {
-    if (device_loaded_) return;
-    const Stopwatch watch;
-    kadr::load_device(*device_.device, *loaded_);
-    summary_.times.scene += watch.seconds();
-    device_loaded_ = true;
-}
-
-ViewSpec RenderJob::view_with_exposure(const FrameTime& time) {
-    ViewSpec view = view_at(loaded_->shot().view, time.time_s());
-    if (!view.automatic) return view;
-    if (!exposure_) {
-        load_device();
-        const FrameTime first = loaded_->bound().sequence().frame(metered_frame_);
-        exposure_ = meter_exposure(loaded_->shot(), loaded_->scene(), *renderer_, first);
-    }
-    view.exposure_stops = *exposure_;
-    view.automatic = false;
-    return view;
-}
-
 /// Of all that a frame's samples depend on. Where they are dealt until the noise on the display is small enough, the exposure
-/// is a part of that: two stops more show four times the noise.
-Hash RenderJob::key_of(const std::vector<SceneSnapshot>& parts, const ViewSpec& view) const {
+/// is a part of that: two stops more show four times the noise. An automatic one is the same for all frames.
+Hash RenderJob::key_of(const std::vector<SceneSnapshot>& parts, const FrameTime& time) const {
     const Hash content = content_key(parts);
     if (!loaded_->shot().render.max_error) return content;
     Hasher hasher;
     hasher.add(content.hex());
-    hasher.add(view.exposure_stops);
+    hasher.add(view_at(loaded_->shot().view, time.time_s()).exposure_stops);
     return hasher.finish();
 }
 
-/// A frame whose inputs are those of an earlier one over the whole shutter is that frame again, else it is rendered.
-FrameCache::Found RenderJob::find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left) {
-    const Stopwatch watch;
-    const std::vector<SceneSnapshot> parts = make_snapshots(loaded_->bound(), time);
-    const Hash key = key_of(parts, view);
-    if (const auto same = cache_.find(key)) return *same;
-    RenderedFrame frame =
-        renderer_->render(loaded_->bound(), parts,
-                          {film_layers(loaded_->shot().output.aovs), view,
-                           [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); },
-                           budget_.dealer(frames_left)});
-    frame.seconds = watch.seconds();
-    summary_.pixel_samples += frame.statistics.pixel_samples;
-    summary_.times.scene += frame.statistics.set_frame_s;
-    summary_.times.trace += frame.statistics.render_s;
-    ++summary_.stopped_by[name_of(frame.sampling.stopped_by)];
-    if (frame.sampling.error.known) {
-        relmse_sum_ += frame.sampling.error.relmse;
-        summary_.relmse = relmse_sum_ / ++relmse_frames_;
-    }
-    const auto kept = std::make_shared<const RenderedFrame>(std::move(frame));
-    cache_.keep(key, time.number, kept);
-    return {time.number, kept};
+/// All that is known of a frame without a device, by the thread of the schedule.
+FrameSchedule::Task RenderJob::evaluate(std::size_t index) {
+    const int frame = loaded_->bound().timing().frames[index];
+    auto task = std::make_shared<FrameTask>();
+    task->index = index;
+    task->time = loaded_->bound().sequence().frame(frame);
+    task->files = frame_files(loaded_->shot().output, frame);
+    task->identity = identity_->of(task->time);
+    task->reused = !options_.overwrite && is_complete(task->files, task->identity);
+    if (task->reused) return task;
+    task->parts = std::make_shared<const std::vector<SceneSnapshot>>(make_snapshots(loaded_->bound(), task->time));
+    task->key = key_of(*task->parts, task->time);
+    find_same(task);
+    return task;
 }
 
-void RenderJob::render(DeliveryItem& item, const FrameTime& time, int frames_left) {
-    load_device();
-    item.view = view_with_exposure(time);
-    const Stopwatch watch;
-    const auto [number, frame] = find_or_render(time, item.view, frames_left);
-    if (number != time.number) item.report.same_as = number;
-    item.metadata = frame_metadata(loaded_->shot(), time, *frame, summary_.device);
-    if (item.report.same_as) item.metadata["same_as"] = std::to_string(number);
-    item.report.seconds = watch.seconds();
+/// A frame whose inputs are those of an earlier one over the whole shutter is that frame again, though it may not be rendered
+/// yet.
+void RenderJob::find_same(const FrameSchedule::Task& task) {
+    const std::lock_guard lock(cache_mutex_);
+    if (const auto known = cache_.find(task->key)) {
+        task->same_as = known->number;
+        task->promise.set_value(known->frame);
+        task->parts.reset();
+        return;
+    }
+    const auto same = std::find_if(under_way_.begin(), under_way_.end(), [&](const auto& other) { return other->key == task->key; });
+    if (same == under_way_.end()) return under_way_.push_back(task);
+    task->same_as = (*same)->time.number;
+    task->rendered = (*same)->rendered;
+    task->parts.reset();
+}
+
+void RenderJob::keep(const FrameTask& task, const Rendered& frame) {
+    const std::lock_guard lock(cache_mutex_);
+    cache_.keep(task.key, task.time.number, frame);
+    std::erase_if(under_way_, [&](const auto& other) { return other.get() == &task; });
+}
+
+RenderJob::Rendered RenderJob::wait_for(const FrameTask& task) const {
+    // What a device does when it is interrupted comes by the future, too; but it may be long in coming.
+    constexpr std::chrono::milliseconds kLookForInterrupts{20};
+    while (task.rendered.wait_for(kLookForInterrupts) != std::future_status::ready)
+        if (interrupt_requested()) throw Interrupted();
+    return task.rendered.get();
+}
+
+void RenderJob::describe(DeliveryItem& item, const FrameTask& task, const Rendered& frame) {
+    item.metadata = frame_metadata(loaded_->shot(), task.time, *frame, frame->device);
+    if (task.same_as) item.metadata["same_as"] = std::to_string(*task.same_as);
+    item.report.same_as = task.same_as;
     item.report.samples = frame->statistics.pixel_samples;
     item.report.dropped = frame->statistics.dropped_samples;
     item.report.motion_error_px = frame->motion.largest_px();
     item.report.motion = frame->motion;
     item.report.sampling = frame->sampling;
-    if (!item.report.same_as) item.report.device = frame->statistics;
     item.image = std::shared_ptr<const Image>(frame, &frame->image);
-    summary_.same += item.report.same_as.has_value();
+    summary_.same += task.same_as.has_value();
+    if (task.same_as) return;
+    item.report.device = frame->statistics;
+    item.report.device_name = frame->device;
+    summary_.pixel_samples += frame->statistics.pixel_samples;
+    summary_.times.scene += frame->statistics.set_frame_s;
+    summary_.times.trace += frame->statistics.render_s;
+    ++summary_.stopped_by[name_of(frame->sampling.stopped_by)];
+    if (!frame->sampling.error.known) return;
+    relmse_sum_ += frame->sampling.error.relmse;
+    summary_.relmse = relmse_sum_ / ++relmse_frames_;
 }
 
-void RenderJob::deliver(int frame, int frames_left) {
-    if (interrupt_requested()) throw Interrupted();
-    const FrameTime time = loaded_->bound().sequence().frame(frame);
+void RenderJob::deliver(const FrameTask& task) {
+    const Stopwatch watch;
     DeliveryItem item;
-    item.report.frame = frame;
-    item.report.files = frame_files(loaded_->shot().output, frame);
-    item.identity = identity_->of(time);
-    item.report.reused = !options_.overwrite && is_complete(item.report.files, item.identity);
-    if (!item.report.reused)
-        render(item, time, frames_left);
-    else if ((video_ || view_wanted_) && is_linear_file(video_source(item.report.files)))
-        item.view = view_with_exposure(time);
+    item.report.frame = task.time.number;
+    item.report.files = task.files;
+    item.report.reused = task.reused;
+    item.identity = task.identity;
+    if (!task.reused) {
+        const Rendered frame = wait_for(task);
+        item.report.seconds = task.same_as ? watch.seconds() : frame->seconds;
+        describe(item, task, frame);
+        item.view = farm_->view_of(task.time);
+    } else if ((video_ || view_wanted_) && is_linear_file(video_source(item.report.files)))
+        item.view = farm_->view_of(task.time);
     summary_.view = item.view;
     ++summary_.frames;
     summary_.reused += item.report.reused;
@@ -267,6 +284,7 @@ void RenderJob::finish() {
     delivery_->finish();
     report_written();
     if (video_) summary_.video = video_->file;
+    summary_.times.scene += farm_->load_s();
     summary_.times.write = delivery_->write_s();
     summary_.times.encode = delivery_->encode_s();
     summary_.times.total = total_.seconds();
@@ -274,18 +292,39 @@ void RenderJob::finish() {
     summary_.peak_memory_bytes = peak_memory_bytes();
 }
 
+void RenderJob::deliver_all() {
+    const std::size_t frames = loaded_->bound().timing().frames.size();
+    schedule_.emplace(frames, farm_->size(), [this](std::size_t index) { return evaluate(index); });
+    farm_->start(*schedule_);
+    for (std::size_t index = 0; index < frames; ++index) {
+        if (interrupt_requested()) throw Interrupted();
+        deliver(*schedule_->at(index));
+        schedule_->delivered();
+        report_written();
+    }
+    farm_->join();
+}
+
+/// What other devices have finished when the run ends early is written, too: frames are dear.
+void RenderJob::deliver_finished() noexcept {
+    if (!schedule_) return;
+    schedule_->stop(std::make_exception_ptr(Interrupted()));
+    farm_->join();
+    for (const FrameSchedule::Task& task : schedule_->left()) try {
+            if (!task->reused && task->rendered.wait_for(std::chrono::seconds(0)) == std::future_status::ready) deliver(*task);
+        } catch (...) {  // why the run ends is known
+        }
+}
+
 RenderSummary RenderJob::run() {
     warn(loaded_->warnings());
     open_output();
-    int left = static_cast<int>(loaded_->bound().timing().frames.size());
     try {
-        for (const int frame : loaded_->bound().timing().frames) {
-            deliver(frame, --left);
-            report_written();
-        }
+        deliver_all();
         finish();
     } catch (...) {
         // Complete frames stay: those that are rendered are written, and reported, before the run ends.
+        deliver_finished();
         delivery_->abandon();
         report_written();
         // Ctrl-C reaches ffmpeg, too; what it then complains about is not the reason why the run ends.

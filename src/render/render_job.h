@@ -41,6 +41,7 @@ struct FrameReport {
     SamplingReport sampling;
     std::vector<std::filesystem::path> files;
     DeviceStatistics device;
+    std::string device_name;         ///< that rendered it; empty where none did
     std::string preview;             ///< "sheet", "onion" or "path": a picture that is no frame of the shot
     std::vector<int> frames;         ///< those that such a picture shows
     std::string note;                ///< what else a person should know of it; may be empty

@@ -170,7 +170,7 @@ int SampleSteering::next_round(const Film& film) {
     const bool steered = render_.max_error || std::isfinite(budget_s_);
     if (so_far_ == 0) rounds_begin_s_ = clock_();
     if (so_far_ >= render_.samples) return stop(steered ? SamplingStop::at_most : SamplingStop::samples);
-    if (render_.max_error && so_far_ >= render_.at_least && !update_active(film)) return stop(SamplingStop::max_error);
+    if (looks_at_film() && !update_active(film)) return stop(SamplingStop::max_error);
     const int count = std::min(ladder_step(), affordable(film));
     if (count < 1 || (so_far_ > 0 && steered && count < 2 && render_.samples - so_far_ > 1))
         return stop(SamplingStop::time_budget);

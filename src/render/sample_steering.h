@@ -48,6 +48,8 @@ public:
     SampleSteering(const RenderSpec& render, double budget_s, ViewSpec view, double scale,
                    std::function<double()> clock);
 
+    /// Whether next_round() looks at the film's sums, which then have to be at home.
+    bool looks_at_film() const { return render_.max_error && so_far_ >= render_.at_least; }
     /// Samples that every active pixel gets next, even but for a fixed number; 0: the frame is done.
     int next_round(const Film& film);
     /// [y][x], 0: done; null: all pixels go on.

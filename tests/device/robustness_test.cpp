@@ -162,6 +162,26 @@ TEST(Device, NamesAndRefusals) {
         request.name = name;
         EXPECT_THROW(make_device(request), InputError) << name;
     }
+    for (const auto& [name, text] : {std::pair{"hiprt:0,0", "error: --device hiprt:0,0: GPU 0 is there twice\n  name every GPU once: one renders one frame at a time"},
+                                     {"hiprt:0,", "error: --device is 'hiprt:0,'\n  expected the number of a GPU, as in hiprt:0, or several, as in hiprt:0,1; see kadr devices"},
+                                     {"hiprt:1,x", "error: --device is 'hiprt:1,x'\n  expected the number of a GPU, as in hiprt:0, or several, as in hiprt:0,1; see kadr devices"}}) {
+        request.name = name;
+        try {
+            make_devices(request);
+            FAIL() << name;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.diagnostics()[0].text(), text);
+        }
+    }
+    request.name = "hiprt:0,1";
+    try {
+        make_device(request);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.diagnostics()[0].text(), "error: --device hiprt:0,1: only kadr render deals out frames to several GPUs\n  name one, as in hiprt:0");
+    }
+    request.name = "cpu";
+    EXPECT_EQ(make_devices(request).size(), 1u);
     EXPECT_EQ(list_devices().size(), 2u);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -15,8 +16,11 @@ namespace {
 
 using hiprt::Error;
 
-/// The one fake there is: contexts point to the runtime, and the library has functions only.
-FakeHiprt* g_fake = nullptr;
+/// Those that there are, by their runtimes' contexts: the library has functions only.
+std::map<void*, FakeHiprt*>& fakes() {
+    static std::map<void*, FakeHiprt*> all;
+    return all;
+}
 
 std::uintptr_t number_of(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
 
@@ -43,6 +47,13 @@ std::vector<Range> inputs_of(const hiprt::GeometryBuildInput& input) {
     const hiprt::TriangleMesh& mesh = input.mesh;
     return {{number_of(mesh.vertices), std::size_t{mesh.vertex_count} * mesh.vertex_stride},
             {number_of(mesh.indices), std::size_t{mesh.triangle_count} * mesh.triangle_stride}};
+}
+
+/// A structure leads to what rays fetch through it: the recording runtime follows addresses.
+void note_inputs(hiprt::Geometry geometry, const hiprt::GeometryBuildInput& input) {
+    const bool boxes = input.type == hiprt::PrimitiveType::aabb_list;
+    const void* const inputs[] = {boxes ? input.list.boxes : input.mesh.vertices, boxes ? nullptr : input.mesh.indices};
+    std::memcpy(reinterpret_cast<void*>(geometry), inputs, sizeof inputs);
 }
 
 struct Pose {
@@ -89,14 +100,29 @@ Pose pose_of(const kernels::FrameMatrix& f) {
 
 }  // namespace
 
+/// One call into a context. HIPRT's context is for one thread at a time.
+class Entered {
+public:
+    Entered(std::recursive_mutex& inside, RecordingRuntime& runtime)
+        : call_(inside, std::try_to_lock), locked_(runtime.lock()) {
+        if (!call_.owns_lock()) runtime.fault("hiprt: a context is used by two threads at once");
+    }
+
+private:
+    std::unique_lock<std::recursive_mutex> call_;
+    std::unique_lock<std::recursive_mutex> locked_;
+};
+
 struct FakeEntryPoints {
     static Error create_context(std::uint32_t version, const hiprt::ContextCreationInput& input,
                                 hiprt::Context& context) {
-        FakeHiprt& f = *g_fake;
+        const auto known = fakes().find(input.context);
+        if (known == fakes().end()) return Error::invalid_parameter;
+        FakeHiprt& f = *known->second;
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("create_context")) return Error::internal;
         if (version != hiprt::kApiVersion) return Error::invalid_api_version;
         f.runtime_.expect_current("create_context");
-        if (input.context != f.runtime_.native_context()) f.fault("create_context: not the runtime's context");
         const bool amd = f.runtime_.vendor == GpuVendor::amd;
         if (input.device_type != (amd ? hiprt::DeviceType::amd : hiprt::DeviceType::nvidia))
             f.fault("create_context: not the runtime's vendor");
@@ -108,14 +134,19 @@ struct FakeEntryPoints {
 
     /// The fake of a context; a call without one is a fault.
     static FakeHiprt& of(hiprt::Context context, const char* call) {
-        if (context != reinterpret_cast<hiprt::Context>(g_fake) || !g_fake->has_context)
-            g_fake->fault(std::string(call) + ": no such context");
-        g_fake->runtime_.expect_current(call);
-        return *g_fake;
+        FakeHiprt* fake = nullptr;
+        for (const auto& [native, one] : fakes())
+            if (reinterpret_cast<hiprt::Context>(one) == context) fake = one;
+        if (!fake) fake = fakes().begin()->second;
+        if (reinterpret_cast<hiprt::Context>(fake) != context || !fake->has_context)
+            fake->fault(std::string(call) + ": no such context");
+        fake->runtime_.expect_current(call);
+        return *fake;
     }
 
     static Error destroy_context(hiprt::Context context) {
         FakeHiprt& f = of(context, "destroy_context");
+        const Entered entered(f.inside_, f.runtime_);
         const bool fails = f.runtime_.begin_call("destroy_context");
         for (const std::string& leak : f.leaks())
             if (leak != "a context") f.fault("destroy_context: there is still " + leak);
@@ -126,6 +157,7 @@ struct FakeEntryPoints {
 
     static Error set_log_level(hiprt::Context context, std::uint32_t level) {
         FakeHiprt& f = of(context, "set_log_level");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("set_log_level")) return Error::internal;
         f.log_level = level;
         return Error::success;
@@ -133,6 +165,7 @@ struct FakeEntryPoints {
 
     static Error set_cache_path(hiprt::Context context, const char* path) {
         FakeHiprt& f = of(context, "set_cache_path");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("set_cache_path")) return Error::internal;
         f.cache_path = path;
         return Error::success;
@@ -141,6 +174,7 @@ struct FakeEntryPoints {
     static Error create_geometries(hiprt::Context context, std::uint32_t count, const hiprt::GeometryBuildInput* inputs,
                                    hiprt::BuildOptions options, hiprt::Geometry** created) {
         FakeHiprt& f = of(context, "create_geometries");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("create_geometries")) return Error::internal;
         if (count == 0 || !inputs || !created) return Error::invalid_parameter;
         f.check_options(options);
@@ -166,6 +200,7 @@ struct FakeEntryPoints {
 
     static Error destroy_geometry(hiprt::Context context, hiprt::Geometry geometry) {
         FakeHiprt& f = of(context, "destroy_geometry");
+        const Entered entered(f.inside_, f.runtime_);
         const bool fails = f.runtime_.begin_call("destroy_geometry");
         const auto found = f.geometries.find(geometry);
         if (found == f.geometries.end()) {
@@ -189,6 +224,7 @@ struct FakeEntryPoints {
                                            const hiprt::GeometryBuildInput* inputs, hiprt::BuildOptions options,
                                            std::size_t& bytes) {
         FakeHiprt& f = of(context, "geometries_temporary_size");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("geometries_temporary_size")) return Error::internal;
         if (count == 0 || !inputs) return Error::invalid_parameter;
         f.check_options(options);
@@ -206,6 +242,7 @@ struct FakeEntryPoints {
                                   const hiprt::GeometryBuildInput* inputs, hiprt::BuildOptions options,
                                   hiprt::DevicePointer temporary, hiprt::Stream stream, hiprt::Geometry* geometries) {
         FakeHiprt& f = of(context, "build_geometries");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("build_geometries")) return Error::internal;
         if (count == 0 || !inputs || !geometries) return Error::invalid_parameter;
         f.check_options(options);
@@ -220,8 +257,7 @@ struct FakeEntryPoints {
             if (!(record.options == options)) f.fault("build_geometries: other flags than it was created with");
             if (inputs[i].type != record.input.type || primitives_of(inputs[i]) != primitives_of(record.input))
                 f.fault("build_geometries: another size than it was created for");
-            std::vector<Range> uses = {{number_of(geometries[i]), record.bytes}};
-            for (const Range& range : inputs_of(inputs[i])) uses.push_back(range);
+            std::vector<Range> writes = {{number_of(geometries[i]), record.bytes}};
             if (operation == hiprt::BuildOperation::build) {
                 const auto size = f.geometry_sizes_.find(key_of(inputs[i]));
                 if (size == f.geometry_sizes_.end() || !(size->second.options == options))
@@ -229,10 +265,10 @@ struct FakeEntryPoints {
                 else {
                     f.runtime_.expect_device({number_of(temporary), size->second.bytes},
                                              "build_geometries' temporary buffer");
-                    uses.push_back({number_of(temporary), size->second.bytes});
+                    writes.push_back({number_of(temporary), size->second.bytes});
                 }
             }
-            f.runtime_.enqueue(stream, std::move(uses), [&f, geometry = geometries[i], input = inputs[i], operation] {
+            f.runtime_.enqueue(stream, "build_geometries", inputs_of(inputs[i]), std::move(writes), [&f, geometry = geometries[i], input = inputs[i], operation] {
                 f.run_geometry_build(geometry, input, operation);
             });
         }
@@ -242,6 +278,7 @@ struct FakeEntryPoints {
     static Error compact_geometries(hiprt::Context context, std::uint32_t count, hiprt::Stream stream,
                                     hiprt::Geometry* in, hiprt::Geometry** out) {
         FakeHiprt& f = of(context, "compact_geometries");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("compact_geometries")) return Error::internal;
         if (count == 0 || !in || !out) return Error::invalid_parameter;
         for (std::uint32_t i = 0; i < count; ++i)
@@ -262,6 +299,7 @@ struct FakeEntryPoints {
             f.geometries.erase(found);
             *out[i] = reinterpret_cast<hiprt::Geometry>(address);
             f.geometries[*out[i]] = record;
+            note_inputs(*out[i], record.input);
         }
         return Error::success;
     }
@@ -269,6 +307,7 @@ struct FakeEntryPoints {
     static Error create_scene(hiprt::Context context, const hiprt::SceneBuildInput& input, hiprt::BuildOptions options,
                               hiprt::Scene& created) {
         FakeHiprt& f = of(context, "create_scene");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("create_scene")) return Error::internal;
         f.check_options(options);
         if (input.instance_count == 0) f.fault("create_scene: no instances");
@@ -285,6 +324,7 @@ struct FakeEntryPoints {
 
     static Error destroy_scene(hiprt::Context context, hiprt::Scene scene) {
         FakeHiprt& f = of(context, "destroy_scene");
+        const Entered entered(f.inside_, f.runtime_);
         const bool fails = f.runtime_.begin_call("destroy_scene");
         const auto found = f.scenes.find(scene);
         if (found == f.scenes.end()) {
@@ -301,6 +341,7 @@ struct FakeEntryPoints {
     static Error scene_temporary_size(hiprt::Context context, const hiprt::SceneBuildInput& input,
                                       hiprt::BuildOptions options, std::size_t& bytes) {
         FakeHiprt& f = of(context, "scene_temporary_size");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("scene_temporary_size")) return Error::internal;
         f.check_options(options);
         bytes = 64 + input.instance_count * f.temporary_per_primitive;
@@ -312,6 +353,7 @@ struct FakeEntryPoints {
                              const hiprt::SceneBuildInput& input, hiprt::BuildOptions options,
                              hiprt::DevicePointer temporary, hiprt::Stream stream, hiprt::Scene scene) {
         FakeHiprt& f = of(context, "build_scene");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("build_scene")) return Error::internal;
         f.check_options(options);
         const auto found = f.scenes.find(scene);
@@ -331,22 +373,23 @@ struct FakeEntryPoints {
             return Error::invalid_parameter;
         }
         const std::size_t frame = input.frame_type == hiprt::FrameType::srt ? 48 : 64;
-        std::vector<Range> uses = {{number_of(scene), record.bytes},
-                                   {number_of(temporary), size->second.bytes},
-                                   {number_of(input.instances), input.instance_count * sizeof(hiprt::Instance)},
-                                   {number_of(input.headers), input.instance_count * sizeof(kernels::TransformHeader)},
-                                   {number_of(input.frames), input.frame_count * frame},
-                                   {number_of(input.masks), input.instance_count * sizeof(std::uint32_t)}};
+        std::vector<Range> writes = {{number_of(scene), record.bytes}, {number_of(temporary), size->second.bytes}},
+                           reads = {{number_of(input.instances), input.instance_count * sizeof(hiprt::Instance)},
+                                    {number_of(input.headers), input.instance_count * sizeof(kernels::TransformHeader)},
+                                    {number_of(input.frames), input.frame_count * frame},
+                                    {number_of(input.masks), input.instance_count * sizeof(std::uint32_t)}};
         bool right = true;
-        for (const Range& range : uses) right = f.runtime_.expect_device(range, "build_scene") && right;
+        for (const std::vector<Range>& ranges : {writes, reads})
+            for (const Range& range : ranges) right = f.runtime_.expect_device(range, "build_scene") && right;
         if (!right) return Error::invalid_parameter;
-        f.runtime_.enqueue(stream, std::move(uses), [&f, scene, input] { f.run_scene_build(scene, input); });
+        f.runtime_.enqueue(stream, "build_scene", std::move(reads), std::move(writes), [&f, scene, input] { f.run_scene_build(scene, input); });
         return Error::success;
     }
 
     static Error create_function_table(hiprt::Context context, std::uint32_t geometry_types, std::uint32_t ray_types,
                                        hiprt::FunctionTable& created) {
         FakeHiprt& f = of(context, "create_function_table");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("create_function_table")) return Error::internal;
         if (geometry_types == 0 || ray_types == 0) return Error::invalid_parameter;
         const DeviceAddress address = f.take(64);
@@ -359,6 +402,7 @@ struct FakeEntryPoints {
     static Error set_function_table(hiprt::Context context, hiprt::FunctionTable table, std::uint32_t geometry_type,
                                     std::uint32_t ray_type, hiprt::FunctionData) {
         FakeHiprt& f = of(context, "set_function_table");
+        const Entered entered(f.inside_, f.runtime_);
         if (f.runtime_.begin_call("set_function_table")) return Error::internal;
         if (f.tables.count(table) == 0 || geometry_type >= kernels::geometry_type::kCount || ray_type != 0)
             f.fault("set_function_table: no such entry");
@@ -367,6 +411,7 @@ struct FakeEntryPoints {
 
     static Error destroy_function_table(hiprt::Context context, hiprt::FunctionTable table) {
         FakeHiprt& f = of(context, "destroy_function_table");
+        const Entered entered(f.inside_, f.runtime_);
         const bool fails = f.runtime_.begin_call("destroy_function_table");
         if (f.tables.erase(table) == 0) {
             f.fault("destroy_function_table: no such table");
@@ -404,8 +449,8 @@ struct FakeEntryPoints {
     }
 };
 
-FakeHiprt::FakeHiprt(RecordingRuntime& runtime) : runtime_(runtime) { g_fake = this; }
-FakeHiprt::~FakeHiprt() { g_fake = nullptr; }
+FakeHiprt::FakeHiprt(RecordingRuntime& runtime) : runtime_(runtime) { fakes()[runtime.native_context()] = this; }
+FakeHiprt::~FakeHiprt() { fakes().erase(runtime_.native_context()); }
 
 hiprt::Api FakeHiprt::api() {
     using E = FakeEntryPoints;
@@ -507,6 +552,7 @@ void FakeHiprt::run_box_build(GeometryRecord& record, const hiprt::GeometryBuild
 void FakeHiprt::run_geometry_build(hiprt::Geometry handle, const hiprt::GeometryBuildInput& input,
                                    hiprt::BuildOperation operation) {
     GeometryRecord& record = geometries.at(handle);
+    note_inputs(handle, input);
     if (input.type == hiprt::PrimitiveType::aabb_list) return run_box_build(record, input);
     const hiprt::TriangleMesh& mesh = input.mesh;
     const std::vector<std::uint32_t> indices = read<std::uint32_t>(mesh.indices, std::size_t{3} * mesh.triangle_count);
@@ -536,6 +582,8 @@ void FakeHiprt::run_scene_build(hiprt::Scene handle, const hiprt::SceneBuildInpu
         scene.srt = read<kernels::FrameSrt>(input.frames, input.frame_count);
     else
         scene.matrices = read<kernels::FrameMatrix>(input.frames, input.frame_count);
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        std::memcpy(reinterpret_cast<hiprt::Geometry*>(handle) + i, &scene.instances[i].geometry, sizeof(hiprt::Geometry));
     for (const hiprt::Instance& instance : scene.instances) {
         if (instance.type != hiprt::InstanceType::geometry) fault("an instance of something else than a geometry");
         const auto found = geometries.find(instance.geometry);

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -80,6 +81,7 @@ private:
     void give_back(const void* structure);
 
     RecordingRuntime& runtime_;
+    std::recursive_mutex inside_;  ///< a call that uses the context
     std::map<std::pair<void*, std::size_t>, SizeAnswer> geometry_sizes_;         ///< by vertices and triangle count
     std::map<std::pair<std::uint32_t, std::uint32_t>, SizeAnswer> scene_sizes_;  ///< by instances and frames
 };

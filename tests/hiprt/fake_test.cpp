@@ -3,11 +3,14 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fake_hiprt.h"
+#include "kernels/gpu/launch_params.h"
 #include "recording_runtime.h"
 
 namespace kadr {
@@ -136,6 +139,101 @@ TEST(Fakes, Memory) {
     ByHand hand;
     EXPECT_THAT(hand.runtime.leaks(), Contains("a stream"));
     EXPECT_THAT(hand.runtime.leaks(), Contains("12 bytes of device memory"));
+}
+
+/// Streams, an event and memory, to race with.
+struct TwoStreams : ByHand {
+    GpuStreamHandle other = nullptr;
+    GpuEventHandle event = nullptr;
+    DeviceAddress target = 0;
+    void* pinned = nullptr;
+    kernels::LaunchParams params{};
+    DeviceAddress list = 0;  ///< of instances, which the launch reads through its argument
+
+    TwoStreams() {
+        (void)runtime.create_stream(other);
+        (void)runtime.create_event(event);
+        (void)runtime.allocate(64, list);
+        (void)runtime.allocate(64, target);
+        (void)runtime.allocate_pinned(64, pinned);
+        std::memset(pinned, 0, 64);
+        std::memset(reinterpret_cast<void*>(target), 0, 64);
+        // A table that leads to another: what a launch reads by way of it.
+        std::memcpy(reinterpret_cast<void*>(list), &target, sizeof target);
+        params.scene.instances = reinterpret_cast<const kernels::Instance*>(list);
+    }
+    void launch(GpuStreamHandle on) {
+        void* const arguments[] = {&params};
+        (void)runtime.launch(runtime.make_function("kernel"), {}, arguments, on);
+    }
+    void overwrite(GpuStreamHandle on) { (void)runtime.upload(target, pinned, 8, on); }
+};
+
+std::string race(const std::function<void(TwoStreams&)>& action) {
+    TwoStreams hand;
+    action(hand);
+    hand.wait();
+    return hand.runtime.faults.empty() ? "" : hand.runtime.faults.front();
+}
+
+TEST(Fakes, StreamsThatDoNotWaitForEachOther) {
+    const auto kNoWait = HasSubstr("use the same memory on two streams, and neither waits for the other");
+    EXPECT_THAT(race([](TwoStreams& h) { h.launch(h.stream), h.overwrite(h.other); }), kNoWait);
+    EXPECT_THAT(race([](TwoStreams& h) { h.overwrite(h.other), h.launch(h.stream); }), kNoWait);
+    EXPECT_THAT(race([](TwoStreams& h) { h.overwrite(h.stream), h.overwrite(h.other); }), kNoWait);
+    // An event that was recorded too early, or that the wrong stream waits for, orders nothing.
+    EXPECT_THAT(race([](TwoStreams& h) {
+                    (void)h.runtime.record(h.event, h.other);
+                    h.overwrite(h.other);
+                    (void)h.runtime.make_wait(h.stream, h.event);
+                    h.launch(h.stream);
+                }),
+                kNoWait);
+    EXPECT_THAT(race([](TwoStreams& h) {
+                    h.overwrite(h.other);
+                    (void)h.runtime.record(h.event, h.other);
+                    h.launch(h.stream);
+                    (void)h.runtime.make_wait(h.stream, h.event);
+                }),
+                kNoWait);
+    // Running is not enough: the host did not wait for it.
+    EXPECT_THAT(race([](TwoStreams& h) {
+                    h.launch(h.stream);
+                    (void)h.runtime.record(h.event, h.stream);
+                    GpuStreamHandle third = nullptr;
+                    (void)h.runtime.create_stream(third);
+                    (void)h.runtime.make_wait(third, h.event);
+                    h.launch(third);
+                    h.overwrite(h.other);
+                }),
+                kNoWait);
+}
+
+TEST(Fakes, StreamsThatWaitForEachOther) {
+    EXPECT_EQ(race([](TwoStreams& h) { h.launch(h.stream), h.overwrite(h.stream); }), "");
+    EXPECT_EQ(race([](TwoStreams& h) { h.launch(h.stream), h.launch(h.other); }), "");
+    EXPECT_EQ(race([](TwoStreams& h) { h.launch(h.stream), h.wait(), h.overwrite(h.other); }), "");
+    EXPECT_EQ(race([](TwoStreams& h) {
+                  h.overwrite(h.other);
+                  (void)h.runtime.record(h.event, h.other);
+                  (void)h.runtime.make_wait(h.stream, h.event);
+                  h.launch(h.stream);
+              }),
+              "");
+    EXPECT_EQ(race([](TwoStreams& h) {
+                  h.launch(h.stream);
+                  (void)h.runtime.record(h.event, h.stream);
+                  (void)h.runtime.wait_for(h.event);
+                  h.overwrite(h.other);
+              }),
+              "");
+}
+
+TEST(Fakes, WhatTheHostDidNotWaitForIsPending) {
+    TwoStreams h;
+    h.launch(h.stream);
+    (void)h.runtime.release(h.list);
+    EXPECT_THAT(h.runtime.faults, Contains(HasSubstr("freed while work on it is pending")));
 }
 
 TEST(Fakes, ThreadsWithoutContext) {

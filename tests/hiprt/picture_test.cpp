@@ -3,52 +3,17 @@
 // a GPU will make of it.
 
 #include <cmath>
-#include <cstring>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "brute_force_tracer.h"
 #include "device/small_scene.h"
-#include "fake_gpu.h"
-#include "kernels/gpu/entry_points.h"
+#include "tracing_gpu.h"
 
 namespace kadr::test {
 namespace {
 
 using kernels::IntegratorKind;
-
-/// What kernels are compiled for here: all that a scene may require.
-template <IntegratorKind kIntegrator>
-constexpr unsigned kSet = kernels::kernel_requirements(kIntegrator, kernels::requirement::kAll);
-
-template <IntegratorKind kIntegrator>
-double trace(const FakeHiprt& hiprt, const kernels::LaunchParams& params) {
-    kernels::LaunchCounters counters{};
-    for (int y = params.y0; y < params.y1; ++y)
-        for (int x = params.x0; x < params.x1; ++x) {
-            if (!kernels::is_wanted(params, x, y)) continue;
-            BruteForceTracer tracer(hiprt, params, kIntegrator == IntegratorKind::direct);
-            kernels::PixelDriver<float, kSet<kIntegrator>, kIntegrator, BruteForceTracer>(params, tracer, x, y)
-                .render(counters);
-        }
-    params.counters->rays += counters.rays;
-    params.counters->samples += counters.samples;
-    params.counters->dropped += counters.dropped;
-    return 1e-6;
-}
-
-/// A GPU whose kernels render.
-struct TracingGpu : FakeGpu {
-    TracingGpu() {
-        runtime->on_launch = [this](const std::string& function, const std::byte* argument) {
-            kernels::LaunchParams params;
-            std::memcpy(static_cast<void*>(&params), argument, sizeof params);
-            return function == "kadr_path" ? trace<IntegratorKind::path>(hiprt, params)
-                                           : trace<IntegratorKind::direct>(hiprt, params);
-        };
-    }
-};
 
 Film render_on(Device& device, SmallScene& s, int samples, FilmLayers layers) {
     s.snapshot.geometry_key = 1;
@@ -58,7 +23,9 @@ Film render_on(Device& device, SmallScene& s, int samples, FilmLayers layers) {
     film.clear();
     Pass pass;
     pass.sample_count = pass.total_samples = samples;
+    device.begin_film(film);
     device.render(pass, film);
+    device.read_film(film);
     return film;
 }
 

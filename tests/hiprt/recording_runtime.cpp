@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,11 +33,13 @@ std::size_t RecordingRuntime::count(const std::string& call) const {
 }
 
 bool RecordingRuntime::begin_call(const std::string& name) {
+    const auto locked = lock();
     calls.push_back(name);
     return static_cast<int>(calls.size()) - 1 == failing_call;
 }
 
 void RecordingRuntime::expect_current(const std::string& call) {
+    const auto locked = lock();
     if (current_.count(std::this_thread::get_id()) == 0) fault(call + ": this thread never called make_current");
 }
 
@@ -48,6 +51,7 @@ const RecordingRuntime::Block* RecordingRuntime::find(const Blocks& blocks, cons
 }
 
 bool RecordingRuntime::expect_device(const Range& range, const std::string& what) {
+    const auto locked = lock();
     if (range.bytes == 0) return true;
     const Block* block = find(device_, range);
     if (!block) fault(fmt::format("{}: {} bytes are not inside one allocation of device memory", what, range.bytes));
@@ -63,11 +67,12 @@ bool RecordingRuntime::expect_pinned(const Range& range, const std::string& what
 }
 
 bool RecordingRuntime::is_pending(const Range& range) const {
-    for (const auto& [handle, stream] : streams_)
-        for (const Work& work : stream->work)
-            for (const Range& used : work.uses)
-                if (used.overlaps(range)) return true;
-    return false;
+    const auto overlap = [&](const std::vector<Range>& uses) {
+        return std::any_of(uses.begin(), uses.end(), [&](const Range& used) { return used.overlaps(range); });
+    };
+    return std::any_of(recent_.begin(), recent_.end(), [&](const auto& work) {
+        return overlap(work->reads) || overlap(work->writes) || overlap(work->may_use);
+    });
 }
 
 bool RecordingRuntime::is_idle() const {
@@ -75,23 +80,119 @@ bool RecordingRuntime::is_idle() const {
                        [](const auto& stream) { return stream.second->work.empty(); });
 }
 
-void RecordingRuntime::enqueue(GpuStreamHandle handle, std::vector<Range> uses, std::function<void()> run) {
+void RecordingRuntime::join(Order& order, const Order& other) {
+    for (const auto& [stream, number] : other) order[stream] = std::max(order[stream], number);
+}
+
+/// Later work comes after it, on whatever stream.
+void RecordingRuntime::host_waited(const Order& order) {
+    join(host_, order);
+    std::erase_if(recent_, [&](const auto& work) {
+        const auto waited = host_.find(work->stream);
+        return waited != host_.end() && waited->second >= work->number;
+    });
+}
+
+bool RecordingRuntime::is_ordered(const Work& before, const Work& after) const {
+    const auto seen = after.after.find(before.stream);
+    return seen != after.after.end() && seen->second >= before.number;
+}
+
+void RecordingRuntime::find_races(const Work& work) {
+    const auto overlap = [](const std::vector<Range>& a, const std::vector<Range>& b) {
+        for (const Range& one : a)
+            for (const Range& other : b)
+                if (one.overlaps(other)) return true;
+        return false;
+    };
+    for (const auto& other : recent_) {
+        if (other->stream == work.stream || is_ordered(*other, work) || is_ordered(work, *other)) continue;
+        if (overlap(work.writes, other->writes) || overlap(work.writes, other->reads) || overlap(work.reads, other->writes))
+            fault(fmt::format("{} and {} use the same memory on two streams, and neither waits for the other", work.name, other->name));
+    }
+}
+
+std::shared_ptr<RecordingRuntime::Work> RecordingRuntime::add_work(Stream& stream, const std::string& name,
+                                                                   std::function<void(Work&)> run) {
+    auto work = std::make_shared<Work>();
+    work->name = name;
+    work->stream = &stream;
+    work->number = ++stream.count;
+    join(stream.order, host_);
+    work->after = stream.order;
+    stream.order[&stream] = work->number;
+    work->run = std::move(run);
+    stream.work.push_back(work);
+    recent_.push_back(work);
+    return work;
+}
+
+void RecordingRuntime::enqueue(GpuStreamHandle handle, const std::string& name, std::vector<Range> reads,
+                               std::vector<Range> writes, std::function<void()> run) {
     Stream* stream = stream_of(handle, "work");
-    if (stream) stream->work.push_back({std::move(uses), std::move(run)});
+    if (!stream) return;
+    const auto work = add_work(*stream, name, [run = std::move(run)](Work&) { run(); });
+    work->reads = std::move(reads);
+    work->writes = std::move(writes);
+    find_races(*work);
 }
 
 void RecordingRuntime::run_one(Stream& stream) {
-    const Work work = std::move(stream.work.front());
+    const std::shared_ptr<Work> work = stream.work.front();
     stream.work.pop_front();
-    work.run();
+    work->run(*work);
+}
+
+void RecordingRuntime::run_until(const Mark& mark) {
+    while (!mark.past && !mark.stream->work.empty()) run_one(*mark.stream);
 }
 
 void RecordingRuntime::run_all(GpuStreamHandle handle) {
     Stream* stream = stream_of(handle, "synchronize");
-    while (stream && !stream->work.empty()) run_one(*stream);
+    if (!stream) return;
+    while (!stream->work.empty()) run_one(*stream);
+    join(stream->order, {{stream, stream->count}});
+    host_waited(stream->order);
+}
+
+/// The allocations that addresses among the words lie in, and those that these lead to.
+void RecordingRuntime::reach(const std::byte* words, std::size_t bytes, std::set<std::uintptr_t>& seen,
+                             std::vector<Range>& reads) const {
+    for (std::size_t at = 0; at + sizeof(std::uintptr_t) <= bytes; at += sizeof(std::uintptr_t)) {
+        std::uintptr_t word = 0;
+        std::memcpy(&word, words + at, sizeof word);
+        auto block = device_.upper_bound(word);
+        if (block == device_.begin()) continue;
+        --block;
+        if (word >= block->first + block->second.bytes || block->second.freed || !seen.insert(block->first).second) continue;
+        reads.push_back({block->first, block->second.bytes});
+        reach(block->second.memory.get(), block->second.bytes, seen, reads);
+    }
+}
+
+void RecordingRuntime::note_what_a_launch_uses(Work& work, const std::vector<std::byte>& argument) {
+    kernels::LaunchParams params;
+    std::memcpy(static_cast<void*>(&params), argument.data(), sizeof params);
+    const auto width = static_cast<std::size_t>(params.scene.settings.width);
+    const std::size_t first = static_cast<std::size_t>(params.y0) * width,
+                      count = static_cast<std::size_t>(params.y1 - params.y0) * width;
+    const auto add = [](std::vector<Range>& list, const auto* from, std::size_t n) {
+        if (from) list.push_back({number_of(from), n * sizeof *from});
+    };
+    const kernels::FilmView film = std::exchange(params.film, {});
+    add(work.writes, film.beauty ? film.beauty + first : nullptr, count);
+    add(work.writes, film.samples ? film.samples + first : nullptr, count);
+    add(work.writes, film.weights ? film.weights + first : nullptr, count);
+    add(work.writes, film.surface ? film.surface + first : nullptr, count);
+    add(work.writes, std::exchange(params.counters, nullptr), 1);
+    std::set<std::uintptr_t> seen;
+    reach(reinterpret_cast<const std::byte*>(&params), sizeof params, seen, work.reads);
+    work.may_use.clear();
+    find_races(work);
 }
 
 GpuFunctionHandle RecordingRuntime::make_function(const std::string& name) {
+    const auto locked = lock();
     auto function = std::make_unique<Function>(Function{name});
     void* handle = function.get();
     functions_[handle] = std::move(function);
@@ -111,12 +212,14 @@ RecordingRuntime::Event* RecordingRuntime::event_of(GpuEventHandle event, const 
 }
 
 GpuResult RecordingRuntime::make_current() {
+    const auto locked = lock();
     if (begin_call("make_current")) return failed();
     current_.insert(std::this_thread::get_id());
     return {};
 }
 
 GpuResult RecordingRuntime::memory(std::size_t& free_bytes, std::size_t& total_bytes) {
+    const auto locked = lock();
     if (begin_call("memory")) return failed();
     expect_current("memory");
     free_bytes = capacity - in_use_;
@@ -125,6 +228,7 @@ GpuResult RecordingRuntime::memory(std::size_t& free_bytes, std::size_t& total_b
 }
 
 GpuResult RecordingRuntime::allocate(std::size_t bytes, DeviceAddress& address) {
+    const auto locked = lock();
     if (begin_call("allocate")) return failed();
     expect_current("allocate");
     if (bytes == 0) fault("allocate: nothing is asked for");
@@ -154,6 +258,7 @@ GpuResult RecordingRuntime::release_from(Blocks& blocks, std::uintptr_t address,
 }
 
 GpuResult RecordingRuntime::release(DeviceAddress address) {
+    const auto locked = lock();
     const bool fails = begin_call("release");
     expect_current("release");
     const GpuResult result = release_from(device_, address, "release");
@@ -161,6 +266,7 @@ GpuResult RecordingRuntime::release(DeviceAddress address) {
 }
 
 GpuResult RecordingRuntime::allocate_pinned(std::size_t bytes, void*& memory) {
+    const auto locked = lock();
     if (begin_call("allocate_pinned")) return failed();
     expect_current("allocate_pinned");
     Block block{std::make_unique<std::byte[]>(bytes + 1), bytes, false};
@@ -170,6 +276,7 @@ GpuResult RecordingRuntime::allocate_pinned(std::size_t bytes, void*& memory) {
 }
 
 GpuResult RecordingRuntime::release_pinned(void* memory) {
+    const auto locked = lock();
     const bool fails = begin_call("release_pinned");
     expect_current("release_pinned");
     const GpuResult result = release_from(pinned_, number_of(memory), "release_pinned");
@@ -177,6 +284,7 @@ GpuResult RecordingRuntime::release_pinned(void* memory) {
 }
 
 GpuResult RecordingRuntime::create_stream(GpuStreamHandle& stream) {
+    const auto locked = lock();
     if (begin_call("create_stream")) return failed();
     expect_current("create_stream");
     auto created = std::make_unique<Stream>();
@@ -186,15 +294,18 @@ GpuResult RecordingRuntime::create_stream(GpuStreamHandle& stream) {
 }
 
 GpuResult RecordingRuntime::destroy_stream(GpuStreamHandle handle) {
+    const auto locked = lock();
     const bool fails = begin_call("destroy_stream");
     expect_current("destroy_stream");
     const Stream* stream = stream_of(handle, "destroy_stream");
     if (stream && !stream->work.empty()) fault("destroy_stream: work on it is pending");
+    host_.erase(stream);
     streams_.erase(handle);
     return fails ? failed() : GpuResult{};
 }
 
 GpuResult RecordingRuntime::synchronize(GpuStreamHandle stream) {
+    const auto locked = lock();
     const bool fails = begin_call("synchronize");
     expect_current("synchronize");
     run_all(stream);
@@ -202,40 +313,44 @@ GpuResult RecordingRuntime::synchronize(GpuStreamHandle stream) {
 }
 
 GpuResult RecordingRuntime::synchronize_all() {
+    const auto locked = lock();
     const bool fails = begin_call("synchronize_all");
     expect_current("synchronize_all");
-    for (const auto& [handle, stream] : streams_)
-        while (!stream->work.empty()) run_one(*stream);
+    for (const auto& [handle, stream] : streams_) run_all(handle);
     return fails ? failed() : GpuResult{};
 }
 
 GpuResult RecordingRuntime::upload(DeviceAddress to, const void* from, std::size_t bytes, GpuStreamHandle stream) {
+    const auto locked = lock();
     if (begin_call("upload")) return failed();
     expect_current("upload");
     const Range target{to, bytes}, source{number_of(from), bytes};
     if (!expect_device(target, "upload") || !expect_pinned(source, "upload")) return {};
-    enqueue(stream, {target, source}, [=] { std::memcpy(reinterpret_cast<void*>(to), from, bytes); });
+    enqueue(stream, "upload", {source}, {target}, [=] { std::memcpy(reinterpret_cast<void*>(to), from, bytes); });
     return {};
 }
 
 GpuResult RecordingRuntime::download(void* to, DeviceAddress from, std::size_t bytes, GpuStreamHandle stream) {
+    const auto locked = lock();
     if (begin_call("download")) return failed();
     expect_current("download");
     const Range target{number_of(to), bytes}, source{from, bytes};
     if (!expect_pinned(target, "download") || !expect_device(source, "download")) return {};
-    enqueue(stream, {target, source}, [=] { std::memcpy(to, reinterpret_cast<const void*>(from), bytes); });
+    enqueue(stream, "download", {source}, {target}, [=] { std::memcpy(to, reinterpret_cast<const void*>(from), bytes); });
     return {};
 }
 
 GpuResult RecordingRuntime::fill(DeviceAddress to, std::uint8_t value, std::size_t bytes, GpuStreamHandle stream) {
+    const auto locked = lock();
     if (begin_call("fill")) return failed();
     expect_current("fill");
     if (!expect_device({to, bytes}, "fill")) return {};
-    enqueue(stream, {{to, bytes}}, [=] { std::memset(reinterpret_cast<void*>(to), value, bytes); });
+    enqueue(stream, "fill", {}, {{to, bytes}}, [=] { std::memset(reinterpret_cast<void*>(to), value, bytes); });
     return {};
 }
 
 GpuResult RecordingRuntime::create_event(GpuEventHandle& event) {
+    const auto locked = lock();
     if (begin_call("create_event")) return failed();
     expect_current("create_event");
     auto created = std::make_unique<Event>();
@@ -245,62 +360,87 @@ GpuResult RecordingRuntime::create_event(GpuEventHandle& event) {
 }
 
 GpuResult RecordingRuntime::destroy_event(GpuEventHandle handle) {
+    const auto locked = lock();
     const bool fails = begin_call("destroy_event");
     expect_current("destroy_event");
-    const Event* event = event_of(handle, "destroy_event");
-    if (event && event->stream && !event->past)
-        while (!event->past && !event->stream->work.empty()) run_one(*event->stream);
+    event_of(handle, "destroy_event");  // what waits for its mark may still do so
     events_.erase(handle);
     return fails ? failed() : GpuResult{};
 }
 
 GpuResult RecordingRuntime::record(GpuEventHandle handle, GpuStreamHandle stream) {
+    const auto locked = lock();
     if (begin_call("record")) return failed();
     expect_current("record");
     Event* event = event_of(handle, "record");
-    if (!event) return {};
-    event->stream = stream_of(stream, "record");
-    event->past = false;
-    enqueue(stream, {}, [this, event] {
-        event->past = true;
-        event->at_s = clock_s_;
+    Stream* on = stream_of(stream, "record");
+    if (!event || !on) return {};
+    const auto mark = std::make_shared<Mark>();
+    mark->stream = on;
+    const auto work = add_work(*on, "record", [this, mark](Work&) {
+        mark->past = true;
+        mark->at_s = clock_s_;
     });
+    mark->order = on->order;
+    event->mark = mark;
     return {};
 }
 
 GpuResult RecordingRuntime::wait_for(GpuEventHandle handle) {
+    const auto locked = lock();
     const bool fails = begin_call("wait_for");
     expect_current("wait_for");
-    Event* event = event_of(handle, "wait_for");
-    if (event && !event->stream) fault("wait_for: the event was never recorded");
-    while (event && event->stream && !event->past && !event->stream->work.empty()) run_one(*event->stream);
+    const Event* event = event_of(handle, "wait_for");
+    if (event && !event->mark) fault("wait_for: the event was never recorded");
+    if (event && event->mark) {
+        run_until(*event->mark);
+        host_waited(event->mark->order);
+    }
     return fails ? failed() : GpuResult{};
+}
+
+GpuResult RecordingRuntime::make_wait(GpuStreamHandle handle, GpuEventHandle event_handle) {
+    const auto locked = lock();
+    if (begin_call("make_wait")) return failed();
+    expect_current("make_wait");
+    const Event* event = event_of(event_handle, "make_wait");
+    Stream* stream = stream_of(handle, "make_wait");
+    if (event && !event->mark) fault("make_wait: the event was never recorded");
+    if (!event || !event->mark || !stream) return {};
+    join(stream->order, event->mark->order);
+    add_work(*stream, "make_wait", [mark = event->mark](Work&) { run_until(*mark); });
+    return {};
 }
 
 /// Each question lets one piece of work happen, as if time had passed.
 GpuResult RecordingRuntime::query(GpuEventHandle handle) {
+    const auto locked = lock();
     if (begin_call("query")) return failed();
     expect_current("query");
-    Event* event = event_of(handle, "query");
-    if (!event || !event->stream) return {GpuResult::Kind::failure, "never recorded"};
-    if (!event->past && !event->stream->work.empty()) run_one(*event->stream);
-    return event->past ? GpuResult{} : GpuResult{GpuResult::Kind::not_ready, "not ready"};
+    const Event* event = event_of(handle, "query");
+    if (!event || !event->mark) return {GpuResult::Kind::failure, "never recorded"};
+    if (!event->mark->past && !event->mark->stream->work.empty()) run_one(*event->mark->stream);
+    if (!event->mark->past) return {GpuResult::Kind::not_ready, "not ready"};
+    host_waited(event->mark->order);
+    return {};
 }
 
 GpuResult RecordingRuntime::elapsed(GpuEventHandle begin, GpuEventHandle end, double& seconds) {
+    const auto locked = lock();
     if (begin_call("elapsed")) return failed();
     expect_current("elapsed");
     const Event *a = event_of(begin, "elapsed"), *b = event_of(end, "elapsed");
-    if (!a || !b || !a->past || !b->past) {
+    if (!a || !b || !a->mark || !b->mark || !a->mark->past || !b->mark->past) {
         fault("elapsed: an event is not past");
         return {GpuResult::Kind::failure, "not ready"};
     }
-    seconds = b->at_s - a->at_s;
+    seconds = b->mark->at_s - a->mark->at_s;
     return {};
 }
 
 GpuResult RecordingRuntime::launch(GpuFunctionHandle handle, const LaunchSize& size, std::span<void* const> arguments,
                                    GpuStreamHandle stream) {
+    const auto locked = lock();
     if (begin_call("launch")) return failed();
     expect_current("launch");
     const auto function = functions_.find(handle);
@@ -311,15 +451,17 @@ GpuResult RecordingRuntime::launch(GpuFunctionHandle handle, const LaunchSize& s
     if (function == functions_.end() || arguments.size() != 1) return {};
     const std::byte* argument = static_cast<const std::byte*>(arguments[0]);
     const std::vector<std::byte> copy(argument, argument + sizeof(kernels::LaunchParams));
-    // A kernel may read and write all that there is.
-    std::vector<Range> uses;
-    for (const auto& [address, block] : device_)
-        if (!block.freed) uses.push_back({address, block.bytes});
-    enqueue(stream, std::move(uses), [this, copy, name = function->second->name] {
+    Stream* on = stream_of(stream, "launch");
+    if (!on) return {};
+    const auto work = add_work(*on, "launch", [this, copy, name = function->second->name](Work& launch) {
+        note_what_a_launch_uses(launch, copy);
         const double seconds = on_launch ? on_launch(name, copy.data()) : 0;
         launch_s.push_back(seconds);
         clock_s_ += seconds;
     });
+    // Until what it reads is known it may be anything.
+    for (const auto& [address, block] : device_)
+        if (!block.freed) work->may_use.push_back({address, block.bytes});
     return {};
 }
 

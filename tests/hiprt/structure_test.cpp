@@ -74,7 +74,20 @@ TEST(Structures, OfAllInstancesAreNotFreedWhileTheyAreBuilt) {
     input.frames = frames.pointer();
     input.masks = masks.pointer();
     input.instance_count = input.frame_count = 1;
-    { const HiprtTopLevel level = t.builder.build_top_level(input, build_options(StructureQuality::fast, false)); }
+    {
+        const hiprt::BuildOptions options = build_options(StructureQuality::fast, false);
+        HiprtTopLevel level;
+        t.builder.build_top_level(level, input, options);
+        const hiprt::Scene first = level.handle();
+        t.builder.build_top_level(level, input, options);  // the next frame, of the same size: in the same memory
+        EXPECT_EQ(level.handle(), first);
+        EXPECT_EQ(t.runtime.count("create_scene"), 1u);
+        EXPECT_TRUE(level.fits(input, options));
+        hiprt::SceneBuildInput other = input;
+        other.frame_count = 2;
+        EXPECT_FALSE(level.fits(other, options));
+        EXPECT_FALSE(level.fits(input, build_options(StructureQuality::high, false)));
+    }
     EXPECT_THAT(t.runtime.faults, ::testing::IsEmpty());
     EXPECT_TRUE(t.fake.scenes.empty());
 }

@@ -1,6 +1,10 @@
 #include "render/render_job.h"
 
+#include <chrono>
 #include <map>
+#include <mutex>
+#include <set>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -158,6 +162,116 @@ TEST_F(RenderJobTest, AFailingDeviceEndsTheRunAndKeepsCompleteFrames) {
     };
     EXPECT_THROW(run(), RenderError);
     EXPECT_THAT(done(), ElementsAre(0));
+}
+
+TEST_F(RenderJobTest, TheNextFrameIsStagedWhileOneRenders) {
+    // The schedule is a thread: give it time to have the next frame.
+    fake_device().before_render = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(50)); };
+    run();
+    EXPECT_EQ(fake_device().set_frames, 4);
+    EXPECT_EQ(fake_device().staged, 3);
+}
+
+/// Several devices render the shot.
+class Farm : public RenderJobTest {
+protected:
+    void SetUp() override {
+        RenderJobTest::SetUp();
+        fake_device().devices = 2;
+    }
+    std::vector<float> pixels(int frame) const { return image_io().read(file(fmt::format("tiny.{:04}.png", frame))).pixels; }
+};
+
+TEST_F(Farm, FramesAreDealtOutAndDeliveredInOrder) {
+    options_.overrides.frames = "0-11";
+    std::mutex mutex;
+    std::map<int, std::vector<int>> frames;
+    fake_device().on_frame = [&](int device, int frame) {
+        {
+            const std::lock_guard lock(mutex);
+            frames[device].push_back(frame);
+        }
+        // The first one is slow: those after it are done before it.
+        std::this_thread::sleep_for(std::chrono::milliseconds(frame == 0 ? 100 : 10));
+    };
+    const RenderSummary summary = run();
+    EXPECT_EQ(summary.device, "fake (no lanes, 1 threads) and other (no lanes, 1 threads)");
+    EXPECT_THAT(done(), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
+    EXPECT_EQ(summary.pixel_samples, 12u * 12 * 8 * 4);
+    EXPECT_EQ(fake_device().renders, 12);
+    EXPECT_EQ(frames.size(), 2u);
+    std::set<std::string> names;
+    for (const FrameReport& report : reports_) names.insert(report.device_name);
+    EXPECT_THAT(names, ElementsAre("fake (no lanes, 1 threads)", "other (no lanes, 1 threads)"));
+    std::vector<std::vector<float>> by_two;
+    for (int frame = 0; frame < 12; ++frame) by_two.push_back(pixels(frame));
+    // The same frames by one device.
+    fake_device().devices = 1;
+    options_.overwrite = true;
+    run();
+    for (int frame = 0; frame < 12; ++frame) EXPECT_EQ(pixels(frame), by_two[static_cast<std::size_t>(frame)]) << frame;
+}
+
+TEST_F(Farm, AFrameSaysWhichDeviceRenderedIt) {
+    std::mutex mutex;
+    std::map<int, int> device_of;
+    fake_device().on_frame = [&](int device, int frame) {
+        const std::lock_guard lock(mutex);
+        device_of[frame] = device;
+    };
+    run();
+    for (int frame = 0; frame < 4; ++frame)
+        EXPECT_EQ(image_io().read_metadata(file(fmt::format("tiny.{:04}.png", frame)))["device"], device_of[frame] == 0 ? "fake" : "other");
+}
+
+TEST_F(Farm, OneThatFailsEndsTheRunByNameAndCompleteFramesStay) {
+    options_.overrides.frames = "0-11";
+    fake_device().on_frame = [&](int, int frame) {
+        // Frame 3 fails at once; those before it, and those that the other device has begun, take their time.
+        if (frame == 3) throw RenderError("the device fell over");
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    };
+    try {
+        run();
+        FAIL();
+    } catch (const RenderError& error) {
+        EXPECT_THAT(error.what(), testing::MatchesRegex("(fake|other) \\(no lanes, 1 threads\\): the device fell over"));
+    }
+    const std::vector<int> frames = done();
+    ASSERT_GE(frames.size(), 2u);  // a frame before it may have been taken by no device yet
+    for (const int frame : frames) {
+        EXPECT_NE(frame, 3);
+        EXPECT_TRUE(fs::exists(file(fmt::format("tiny.{:04}.png", frame)))) << frame;
+    }
+    EXPECT_TRUE(leftovers().empty());
+    fake_device().on_frame = {};
+    EXPECT_EQ(run().reused, static_cast<int>(frames.size()));
+}
+
+TEST_F(Farm, AnInterruptEndsAllAndKeepsCompleteFrames) {
+    options_.overrides.frames = "0-11";
+    fake_device().on_frame = [&](int, int frame) {
+        if (frame == 6) interrupt_requested() = true;
+    };
+    EXPECT_THROW(run(), Interrupted);
+    EXPECT_TRUE(leftovers().empty());
+    const std::vector<int> frames = done();
+    EXPECT_LT(frames.size(), 12u);
+    interrupt_requested() = false;
+    fake_device().on_frame = {};
+    EXPECT_EQ(run().reused, static_cast<int>(frames.size()));
+}
+
+TEST_F(Farm, AutomaticExposureIsMeteredOnce) {
+    options_.overrides.set = {{"view.exposure", "auto"}};
+    run();
+    const std::vector<float> by_two = pixels(3);
+    // Four frames, and the small one that is metered.
+    EXPECT_EQ(fake_device().renders, 5);
+    fake_device().devices = 1;
+    options_.overwrite = true;
+    run();
+    EXPECT_EQ(pixels(3), by_two);
 }
 
 TEST_F(RenderJobTest, AnUnwritableFolderIsKnownBeforeTheFirstRay) {

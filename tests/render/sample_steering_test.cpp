@@ -213,6 +213,22 @@ TEST(ShotBudget, GivesTwiceTheTimeToWhatIsTwiceAsDifficult) {
     EXPECT_NEAR(difficult, 30 * 2 / 3.5, 1e-12);
 }
 
+TEST(ShotBudget, SeveralDevicesHaveAsManyTimesTheTime) {
+    double now = 0;
+    ShotBudget budget(10.0, [&] { return now; }, 2);
+    // Four frames, two at a time: each gets half of the shot.
+    const auto first = budget.dealer(2, 0), second = budget.dealer(2, 1);
+    EXPECT_DOUBLE_EQ(first(1.0), 20.0 / 3);   // one of three: the other device's is not known yet
+    EXPECT_DOUBLE_EQ(second(1.0), (20 - 20.0 / 3) / 3);
+    now = 5;
+    const auto third = budget.dealer(0, 1), fourth = budget.dealer(0, 0);
+    // Device 0's frame has ended: nothing of its time is taken any more.
+    EXPECT_DOUBLE_EQ(fourth(1.0), 5.0);
+    EXPECT_DOUBLE_EQ(third(1.0), 5.0);   // never more than there is on one device
+    now = 20;
+    EXPECT_EQ(budget.dealer(0, 0)(1.0), 0.0);
+}
+
 TEST(ShotBudget, NeverDealsLessThanNothing) {
     double now = 0;
     ShotBudget budget(1.0, [&] { return now; });

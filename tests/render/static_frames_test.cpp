@@ -1,4 +1,7 @@
 // Frames that repeat: rendered once, written every time, and said so.
+#include <chrono>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,6 +61,19 @@ TEST_F(StaticFrames, AShotThatHoldsIsRenderedOnce) {
 }
 
 TEST_F(StaticFrames, ALoopIsRenderedOnceRound) {
+    run("{ keys: { 0 f: 1, 1 f: 2, 2 f: 1, 3 f: 2, 4 f: 3 }, interpolate: step }");
+    EXPECT_EQ(fake_device().renders, 3);
+    EXPECT_THAT(same_, ElementsAre(-1, -1, 0, 1, -1, 4));
+}
+
+TEST_F(StaticFrames, OnSeveralDevicesNothingIsRenderedTwice) {
+    fake_device().devices = 3;
+    // The one that the others repeat is still on its way.
+    fake_device().on_frame = [](int, int) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); };
+    run("1");
+    EXPECT_EQ(fake_device().renders, 1);
+    EXPECT_THAT(same_, ElementsAre(-1, 0, 0, 0, 0, 0));
+    std::filesystem::remove_all(folder_.path() / "out");
     run("{ keys: { 0 f: 1, 1 f: 2, 2 f: 1, 3 f: 2, 4 f: 3 }, interpolate: step }");
     EXPECT_EQ(fake_device().renders, 3);
     EXPECT_THAT(same_, ElementsAre(-1, -1, 0, 1, -1, 4));

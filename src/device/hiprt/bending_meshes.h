@@ -38,6 +38,7 @@ public:
     std::uint64_t built() const { return built_; }
     std::uint64_t updated() const { return updated_; }
     std::uint64_t kept() const { return kept_; }
+    bool empty() const { return entries_.empty(); }
     bool blurs() const { return blurs_; }  ///< whether some mesh bends while the shutter is open
 
 private:

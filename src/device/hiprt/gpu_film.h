@@ -1,46 +1,76 @@
 #pragma once
 
-#include <optional>
-
+#include "device/hiprt/download_queue.h"
 #include "device/hiprt/gpu_resources.h"
+#include "device/hiprt/upload_queue.h"
 #include "film/film.h"
 #include "kernels/gpu/launch_params.h"
 
 namespace kadr {
 
-/// The sums of some rows of one half of a film, on the GPU until they are added to the host's.
+/// The sums of a film on the GPU: of all of it, until they are asked for; where memory is short, of some rows of one
+/// half, which come from the host before every pass and go back after it.
+///
+/// Sums always go on from those before, wherever these are, so they are added up in the order of the samples: the film
+/// is the same to the last bit however much of it fits, and whenever it is read.
 class GpuFilm {
 public:
-    GpuFilm(GpuMemory& memory, const GpuStream& stream) : memory_(memory), stream_(stream) {}
+    GpuFilm(GpuMemory& memory, UploadQueue& uploads, DownloadQueue& downloads, const GpuStream& stream)
+        : memory_(memory), uploads_(uploads), downloads_(downloads), stream_(stream) {}
 
-    /// Takes memory for rows [y0, y1) and clears it. @throws GpuOutOfMemory
-    void begin(const Film& film, int y0, int y1);
+    /// The film was cleared; what is on the GPU of another is forgotten.
+    void begin(Film& film);
+    /// Makes rows [first, end) of a half ready to be added to, as many as there is room for. @return end
+    /// @throws GpuOutOfMemory  not even one row fits
+    int take_rows(Film& film, int half, int first);
     /// For the kernels: addressed by pixels of the whole image.
-    kernels::FilmView view() const;
-    /// Waits for the GPU, and adds the sums to a half of the film.
-    void add_to(Film& film, int half);
-    /// Frees what it holds. @return whether it held anything
+    kernels::FilmView view(int half) const;
+    /// What take_rows made ready has been added to: it goes home unless all of the film stays.
+    void rows_done();
+    /// Brings home what is not there yet.
+    void read();
+    /// Brings home what is not there yet and frees all. @return whether there was anything to free
     bool give_back();
 
 private:
+    struct Half {
+        DeviceBuffer<kernels::FilmBeauty> beauty;
+        DeviceBuffer<unsigned> samples;
+        DeviceBuffer<double> weights;
+    };
+    void look_at(Film& film);
+    void allocate(int first, int end, bool both);
+    void fill(int half, bool with_surface);
+    void copy_home(int half, bool with_surface);
     template <class T>
-    void take(DeviceBuffer<T>& buffer, bool wanted);
-    template <class T>
-    const T* read_back(const DeviceBuffer<T>& buffer, bool wanted, std::size_t& offset);
+    void reserve(DeviceBuffer<T>& buffer, bool wanted);
+    template <class T, class HostAt>
+    void send(const DeviceBuffer<T>& buffer, bool wanted, const HostAt& host_at);
+    template <class T, class HostAt>
+    void bring(const DeviceBuffer<T>& buffer, bool wanted, const HostAt& host_at);
+    template <class Visit>
+    void visit_surface(const Visit& visit);
+    void free_all();
     bool keeps_hits() const { return layers_.depth || layers_.motion; }
+    int slot(int half) const { return whole_ ? half : 0; }
 
     GpuMemory& memory_;
+    UploadQueue& uploads_;
+    DownloadQueue& downloads_;
     const GpuStream& stream_;
-    int width_ = 0, y0_ = 0, y1_ = 0;
+    Film* film_ = nullptr;        ///< whose sums these are; null: of none
+    bool host_is_clear_ = false;  ///< it has no sums yet, and nothing has to be copied from there
+    bool whole_ = false;          ///< all of it is here
+    bool unread_ = false;         ///< what is here is not at home yet
+    int half_ = 0, y0_ = 0, y1_ = 0;
     bool weighted_ = false;
     FilmLayers layers_;
-    DeviceBuffer<kernels::FilmBeauty> beauty_;
-    DeviceBuffer<unsigned> samples_;
-    DeviceBuffer<double> weights_;
+    Half halves_[Film::kHalves];  ///< the first alone where not all of the film is here
     DeviceBuffer<kernels::FilmVector> albedo_, normal_;
     DeviceBuffer<double> depth_, hits_;
     DeviceBuffer<kernels::FilmMotion> motion_;
-    PinnedMemory pinned_;
+    bool whole_fits_ = true;  ///< learned when memory runs out, like the next
+    int most_rows_ = 1 << 30;
 };
 
 }  // namespace kadr

@@ -44,6 +44,10 @@ void GpuMemory::release(DeviceAddress address, std::size_t bytes, MemoryUse use)
             fmt::print(stderr, "kadr: cannot free {} of the GPU's memory: {}\n", bytes_text(bytes), r.text);
 }
 
+void GpuMemory::note_step(const std::string& step) {
+    if (steps_.find(step) == std::string::npos) steps_ += (steps_.empty() ? "" : ", ") + step;
+}
+
 std::size_t GpuMemory::taken() const { return std::accumulate(taken_.begin(), taken_.end(), std::size_t{0}); }
 
 std::size_t GpuMemory::free_bytes() {

@@ -35,6 +35,11 @@ public:
     void note_taken(std::size_t bytes, MemoryUse use) { taken_[static_cast<std::size_t>(use)] += bytes; }
     void note_given_back(std::size_t bytes, MemoryUse use) { taken_[static_cast<std::size_t>(use)] -= bytes; }
 
+    /// What was given up because memory was short.
+    void note_step(const std::string& step);
+    void forget_steps() { steps_.clear(); }
+    const std::string& steps() const { return steps_; }  ///< "frames are no longer made ahead, the film comes in parts"
+
     std::size_t taken(MemoryUse use) const { return taken_[static_cast<std::size_t>(use)]; }
     std::size_t taken() const;
     std::size_t free_bytes();  ///< as the runtime reports
@@ -44,6 +49,7 @@ public:
 private:
     GpuRuntime& runtime_;
     std::array<std::size_t, kMemoryUses> taken_{};
+    std::string steps_;
 };
 
 }  // namespace kadr

@@ -41,6 +41,10 @@ GpuStream::~GpuStream() {
 
 void GpuStream::synchronize(const char* action) const { check(runtime_.synchronize(handle_), action); }
 
+void GpuStream::wait_for(const GpuEvent& event) const {
+    check(runtime_.make_wait(handle_, event.handle()), "let a stream of the GPU wait for another");
+}
+
 GpuEvent::GpuEvent(GpuRuntime& runtime) : runtime_(runtime) {
     check(runtime.create_event(handle_), "create an event on the GPU");
 }

@@ -79,6 +79,8 @@ private:
     std::size_t bytes_ = 0;
 };
 
+class GpuEvent;
+
 /// A queue of work. Its destructor waits for what is on it.
 class GpuStream {
 public:
@@ -89,6 +91,8 @@ public:
 
     GpuStreamHandle handle() const { return handle_; }
     void synchronize(const char* action) const;  ///< @throws RenderError  "cannot ACTION: ..."
+    /// What comes on it from now on begins when the event is past. @pre it was recorded
+    void wait_for(const GpuEvent& event) const;
 
 private:
     GpuRuntime& runtime_;

@@ -94,6 +94,8 @@ public:
     virtual GpuResult destroy_event(GpuEventHandle event) = 0;
     virtual GpuResult record(GpuEventHandle event, GpuStreamHandle stream) = 0;
     virtual GpuResult wait_for(GpuEventHandle event) = 0;  ///< until the work before it is done
+    /// What comes on the stream from now on begins when the event, as it was recorded last, is past; nobody waits here.
+    virtual GpuResult make_wait(GpuStreamHandle stream, GpuEventHandle event) = 0;
     virtual GpuResult query(GpuEventHandle event) = 0;     ///< success, or not_ready
     virtual GpuResult elapsed(GpuEventHandle begin, GpuEventHandle end, double& seconds) = 0;
 

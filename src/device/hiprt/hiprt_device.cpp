@@ -45,13 +45,17 @@ public:
           api_(parts.api),
           memory_(current(*runtime_)),
           stream_(*runtime_),
-          uploads_(*runtime_, stream_),
+          scene_stream_(*runtime_),
+          staged_(*runtime_),
+          uploads_(*runtime_, stream_, DownloadQueue::kBlockBytes),
+          scene_uploads_(*runtime_, scene_stream_, UploadQueue::kBlockBytes),
+          downloads_(*runtime_, stream_),
           context_(api_, *runtime_, parts.cache_folder),
           functions_(context_),
           kernels_(context_, std::move(parts.kernel_folder)),
           choice_(parts.kernels),
-          builder_(context_, memory_, stream_),
-          film_(memory_, stream_),
+          builder_(context_, memory_, scene_stream_),
+          film_(memory_, uploads_, downloads_, stream_),
           launches_(*runtime_, stream_) {}
 
     ~HiprtDevice() override { report(runtime_->make_current(), "use the GPU"); }
@@ -68,37 +72,62 @@ public:
         const auto begin = std::chrono::steady_clock::now();
         current(*runtime_);
         scene_.reset();
+        stages_ = true;
+        memory_.forget_steps();
         with_memory("the scene",
-                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, uploads_); });
+                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, scene_uploads_); });
         if (build.quality == BuildQuality::low)
             while (scene_->quality() != StructureQuality::fast) scene_->lower_quality();
-        stream_.synchronize("copy the scene to the GPU");
+        scene_stream_.synchronize("copy the scene to the GPU");
         statistics_.load_s = seconds_since(begin);
     }
 
     void set_frame(const SceneSnapshot& snapshot) override {
         const auto begin = std::chrono::steady_clock::now();
         current(*runtime_);
-        with_memory("the frame", [&] { scene_->set_frame(snapshot); });
-        stream_.synchronize("build the structures of the frame on the GPU");
+        bool staged = false;
+        with_memory("the frame", [&] { staged = scene_->set_frame(snapshot); });
+        if (staged)
+            stream_.wait_for(staged_);
+        else
+            scene_stream_.synchronize("build the structures of the frame on the GPU");
+        const HiprtFrame& frame = scene_->frame();
         // Here and not when it renders: compiling takes long the first time, and is no part of what samples cost.
-        const kernels::IntegratorKind integrator = scene_->view().settings.integrator;
+        const kernels::IntegratorKind integrator = frame.view().settings.integrator;
         const unsigned set = kernels::kernel_requirements(
-            integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : scene_->requirements());
-        function_ = kernels_.get({integrator, set, scene_->asks_functions()});
+            integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : frame.requirements());
+        function_ = kernels_.get({integrator, set, frame.asks_functions()});
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
-        kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
+        take_filter(snapshot.settings);
         const double load_s = statistics_.load_s;
         statistics_ = {};
         statistics_.load_s = load_s;
-        statistics_.required = scene_->requirements();
+        statistics_.required = frame.requirements();
         statistics_.compiled = set;
-        statistics_.instances = scene_->instance_count();
-        statistics_.moving_instances = scene_->moving_count();
-        statistics_.structures = scene_->structures();
+        statistics_.instances = frame.instance_count();
+        statistics_.moving_instances = frame.moving_count();
+        statistics_.structures = frame.structures();
+        statistics_.staged = staged ? 1 : 0;
+        statistics_.memory_steps = memory_.steps();
         statistics_.set_frame_s = seconds_since(begin);
     }
+
+    /// By the thread that renders, between two launches: HIPRT's context is for one thread at a time, and this one would
+    /// only wait. Copies and builds go on a stream of their own, for which the launches of that frame will wait.
+    void stage(const std::shared_ptr<const SceneSnapshot>& next) override {
+        if (!stages_ || !scene_ || scene_->is_staged(*next)) return;
+        current(*runtime_);
+        try {
+            scene_->stage(next);
+            staged_.record(scene_stream_);
+        } catch (const GpuOutOfMemory&) {
+            stop_staging();
+        } catch (const InputError&) {  // it is said when it is that frame's turn
+        }
+    }
+
+    void begin_film(Film& film) override { film_.begin(film); }
 
     void render(const Pass& pass, Film& film) override {
         const auto begin = std::chrono::steady_clock::now();
@@ -106,7 +135,7 @@ public:
         const kernels::LaunchParams params = params_of(pass, film);
         int done = 0;
         while (done < film.height()) {
-            const int end = begin_rows(film, done);
+            const int end = film_.take_rows(film, pass.half, done);
             if (!render_rows(params, pass, film, done, end)) break;
             done = end;
         }
@@ -114,11 +143,26 @@ public:
         statistics_.render_s += seconds_since(begin);
     }
 
+    void read_film(Film&) override {
+        const auto begin = std::chrono::steady_clock::now();
+        current(*runtime_);
+        film_.read();
+        statistics_.render_s += seconds_since(begin);
+    }
+
     DeviceStatistics statistics() const override { return statistics_; }
 
 private:
-    /// Runs what may not fit into memory, with less and less around it: first the film is given back, to come in
-    /// smaller parts; then structures are built at lower quality.
+    /// From here on to the end of the scene, one frame is on the GPU at a time. @return whether there were two
+    bool stop_staging() {
+        if (!scene_->drop_staged()) return false;
+        stages_ = false;
+        memory_.note_step("frames are no longer made ahead");
+        return true;
+    }
+
+    /// Runs what may not fit into memory, with less and less around it: first the frame to come is dropped; then the film
+    /// goes home, to come back in smaller parts; then structures are built at lower quality.
     template <class Action>
     void with_memory(const char* what, const Action& action) {
         std::string steps;
@@ -126,11 +170,14 @@ private:
             try {
                 return action();
             } catch (const GpuOutOfMemory& error) {
-                if (film_.give_back())
+                if (scene_ && stop_staging())
+                    steps += "; frames are no longer made ahead";
+                else if (film_.give_back())
                     steps += "; the film was given back";
-                else if (scene_ && scene_->lower_quality())
+                else if (scene_ && scene_->lower_quality()) {
                     steps += "; structures were built at lower quality";
-                else
+                    memory_.note_step("structures of lower quality");
+                } else
                     throw RenderError(
                         fmt::format("the memory of the GPU does not hold {}: {}{}", what, error.what(), steps));
             }
@@ -138,18 +185,19 @@ private:
     }
 
     kernels::LaunchParams params_of(const Pass& pass, const Film& film) {
-        const kernels::Settings& settings = scene_->view().settings;
+        const HiprtFrame& frame = scene_->frame();
+        const kernels::Settings& settings = frame.view().settings;
         shutter_.weight = sample_weight(shutter_, part_weight_, pass);
-        shutter_table_.set(memory_, uploads_, {&shutter_, 1});
-        filter_table_.set(memory_, uploads_, {&filter_, 1});
         const std::size_t pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
-        if (pass.active) active_.set(memory_, uploads_, {pass.active, pixels});
-        counters_.set(memory_, uploads_, std::vector<kernels::LaunchCounters>(1, kernels::LaunchCounters{}));
+        shutter_table_.set_changed(memory_, uploads_, {&shutter_, 1});
+        if (pass.active) active_.set_changed(memory_, uploads_, {pass.active, pixels});
+        constexpr kernels::LaunchCounters kNone{};
+        counters_.set(memory_, uploads_, {&kNone, 1});
         kernels::LaunchParams params{};
-        params.scene = scene_->view();
-        params.top = scene_->top();
-        params.functions = scene_->asks_functions() ? functions_.handle() : nullptr;
-        params.instance_of = scene_->instance_of();
+        params.scene = frame.view();
+        params.top = frame.top();
+        params.functions = frame.asks_functions() ? functions_.handle() : nullptr;
+        params.instance_of = frame.instance_of();
         params.filter = filter_table_.data();
         params.shutter = shutter_table_.data();
         params.active = pass.active ? active_.data() : nullptr;
@@ -160,40 +208,32 @@ private:
         return params;
     }
 
-    /// Takes memory for as many rows as there is room for. @return the row behind them
-    int begin_rows(const Film& film, int first) {
-        while (true) {
-            const int end = std::min(film.height(), first + std::min(most_rows_, film.height()));
-            try {
-                film_.begin(film, first, end);
-                return end;
-            } catch (const GpuOutOfMemory&) {
-                if (end - first == 1) throw;
-                film_.give_back();
-                most_rows_ = (end - first + 1) / 2;
-            }
-        }
+    /// Made and copied when the shot's filter is seen first.
+    void take_filter(const kernels::Settings& settings) {
+        if (filter_table_.data() && filter_kind_ == settings.filter && filter_radius_ == settings.filter_radius) return;
+        kernels::FilterTable filter{};
+        kernels::build_filter(settings.filter, settings.filter_radius, filter);
+        filter_table_.set(memory_, uploads_, {&filter, 1});
+        filter_kind_ = settings.filter;
+        filter_radius_ = settings.filter_radius;
     }
 
     /// @return whether they were rendered to their end
     bool render_rows(kernels::LaunchParams params, const Pass& pass, Film& film, int first, int end) {
-        params.film = film_.view();
+        params.film = film_.view(pass.half);
         const LaunchPiece rows{0, first, film.width(), end, pass.first_sample, pass.sample_count};
         const auto progress = [&](double done) {
             if (pass.progress) pass.progress((first + done * (end - first)) / film.height());
         };
-        if (!launches_.run(function_, params, rows, pass.cancel, progress)) return false;
-        film_.add_to(film, pass.half);
+        if (!launches_.run(function_, params, rows, pass.cancel, progress, pass.idle)) return false;
+        film_.rows_done();
         return true;
     }
 
     void add_counters() {
-        const PinnedMemory back(*runtime_, sizeof(kernels::LaunchCounters));
-        check(runtime_->download(back.data(), reinterpret_cast<DeviceAddress>(counters_.pointer()),
-                                 sizeof(kernels::LaunchCounters), stream_.handle()),
-              "read the counters back from the GPU");
-        stream_.synchronize("render on the GPU");
-        const auto& counters = *reinterpret_cast<const kernels::LaunchCounters*>(back.data());
+        kernels::LaunchCounters counters{};
+        downloads_.add(&counters, reinterpret_cast<DeviceAddress>(counters_.pointer()), sizeof counters);
+        downloads_.finish();
         statistics_.rays += counters.rays;
         statistics_.pixel_samples += counters.samples;
         statistics_.dropped_samples += counters.dropped;
@@ -207,8 +247,11 @@ private:
     std::shared_ptr<GpuRuntime> runtime_;
     hiprt::Api api_;
     GpuMemory memory_;
-    GpuStream stream_;
-    UploadQueue uploads_;
+    GpuStream stream_;        ///< renders
+    GpuStream scene_stream_;  ///< copies and builds what is to be rendered
+    GpuEvent staged_;         ///< on it: the frame to come is complete
+    UploadQueue uploads_, scene_uploads_;
+    DownloadQueue downloads_;
     HiprtContext context_;
     HiprtFunctionTable functions_;
     TraceKernels kernels_;
@@ -222,9 +265,10 @@ private:
     LaunchQueue launches_;
     std::unique_ptr<HiprtScene> scene_;
 
-    int most_rows_ = 1 << 30;             ///< of the film that are on the GPU at a time; learned when memory runs out
+    bool stages_ = true;                  ///< the frame to come is made while one renders: there is memory for both
     hiprt::Function function_ = nullptr;  ///< of the frame at hand
-    kernels::FilterTable filter_{};
+    kernels::FilterKind filter_kind_{};  ///< of what filter_table_ holds
+    float filter_radius_ = 0;
     kernels::Shutter shutter_;  ///< of the part at hand
     double part_weight_ = 1;
     DeviceStatistics statistics_;

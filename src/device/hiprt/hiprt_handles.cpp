@@ -80,7 +80,14 @@ HiprtTopLevel::HiprtTopLevel(HiprtContext& context, GpuMemory& memory, const hip
     const std::size_t after = memory.free_bytes();
     made.bytes_ = before > after ? before - after : 0;
     memory.note_taken(made.bytes_, MemoryUse::structures);
+    made.made_for_ = input;
+    made.options_ = options;
     *this = std::move(made);
+}
+
+bool HiprtTopLevel::fits(const hiprt::SceneBuildInput& input, const hiprt::BuildOptions& options) const {
+    return handle_ && options_ == options && made_for_.instance_count == input.instance_count &&
+           made_for_.frame_count == input.frame_count && made_for_.frame_type == input.frame_type;
 }
 
 HiprtTopLevel& HiprtTopLevel::operator=(HiprtTopLevel&& other) noexcept {
@@ -88,6 +95,8 @@ HiprtTopLevel& HiprtTopLevel::operator=(HiprtTopLevel&& other) noexcept {
     std::swap(memory_, other.memory_);
     std::swap(handle_, other.handle_);
     std::swap(bytes_, other.bytes_);
+    std::swap(made_for_, other.made_for_);
+    std::swap(options_, other.options_);
     return *this;
 }
 

@@ -69,12 +69,16 @@ public:
     ~HiprtTopLevel();
 
     hiprt::Scene handle() const { return handle_; }
+    /// Whether it can be built anew from an input, in the memory that it has.
+    bool fits(const hiprt::SceneBuildInput& input, const hiprt::BuildOptions& options) const;
 
 private:
     HiprtContext* context_ = nullptr;
     GpuMemory* memory_ = nullptr;
     hiprt::Scene handle_ = nullptr;
     std::size_t bytes_ = 0;
+    hiprt::SceneBuildInput made_for_;
+    hiprt::BuildOptions options_;
 };
 
 /// The table that leads rays to our functions: one row for each kernels::geometry_type, one type of rays.

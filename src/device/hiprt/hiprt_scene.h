@@ -1,113 +1,42 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <vector>
 
-#include "device/device.h"
-#include "device/hiprt/bending_meshes.h"
-#include "device/hiprt/device_table.h"
-#include "device/hiprt/instance_tables.h"
-#include "device/hiprt/rigid_meshes.h"
-#include "device/tables/emitter_tables.h"
-#include "device/tables/environment_tables.h"
-#include "device/tables/light_tables.h"
-#include "device/tables/material_table.h"
+#include "device/hiprt/hiprt_frame.h"
 
 namespace kadr {
 
-/// A scene as HIPRT and the kernels want it on the GPU.
-///
-/// Every instance is one of HIPRT's: meshes stay in their own coordinates. The structure over all instances is built
-/// anew whenever they change (HIPRT's update of it is a race); those of meshes stay.
+/// A scene on the GPU, with the frame that renders and, where there is memory for it, the one that comes next.
 class HiprtScene {
 public:
     /// @param environment  the linear R, G, B of the environment's image; null: none
-    HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads);
+    HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads)
+        : shared_(scene, environment, builder, uploads), current_(std::make_unique<HiprtFrame>(shared_)) {}
 
-    /// On the stream of the builder, without waiting. After an exception the next call starts anew.
-    /// @throws GpuOutOfMemory  lower_quality() may help
+    /// What is staged takes its turn where it is this snapshot, the very object; else the frame at hand becomes it, and
+    /// what is staged stays. On the stream of the builder, without waiting. No launch may be on its way. After an
+    /// exception the next call starts anew.
+    /// @return whether it was staged
+    /// @throws GpuOutOfMemory  drop_staged() or lower_quality() may help
     /// @throws InputError      for what the GPU cannot show, by name
-    void set_frame(const SceneSnapshot& snapshot);
-    /// Drops the structures of all meshes; the next set_frame builds them at a lower quality. @return whether there is
-    /// one
+    bool set_frame(const SceneSnapshot& snapshot);
+    /// Makes the frame that comes next beside the one at hand, which launches may look at meanwhile.
+    /// @throws as set_frame; nothing is staged then
+    void stage(std::shared_ptr<const SceneSnapshot> next);
+    bool is_staged(const SceneSnapshot& snapshot) const { return staged_.get() == &snapshot; }
+    /// Frees what the frame to come takes. @return whether it took anything
+    bool drop_staged();
+    /// Drops the structures of all meshes; the next set_frame builds them at a lower quality. No launch may be on its
+    /// way. @return whether there is a lower one
     bool lower_quality();
 
-    const kernels::SceneView& view() const { return view_; }  ///< for the kernels: addresses of the GPU
-    hiprt::Scene top() const { return top_.handle(); }        ///< null: nothing to see
-    const unsigned* instance_of() const { return instance_of_.data(); }
-    unsigned requirements() const { return requirements_; }
-    bool asks_functions() const { return asks_functions_; }  ///< whether rays ask our functions about some geometry
-    std::uint64_t instance_count() const { return tables_.shown.size(); }
-    std::uint64_t moving_count() const { return tables_.moving; }
-    const StructureCounts& structures() const { return structures_; }
-    StructureQuality quality() const { return rigid_.quality(); }
+    const HiprtFrame& frame() const { return *current_; }
+    StructureQuality quality() const { return shared_.rigid.quality(); }
 
 private:
-    void upload_once(const Scene& scene);
-    void build_geometry(const SceneSnapshot& snapshot);
-    void require_meshes(const SceneSnapshot& snapshot);
-    std::vector<kernels::Geometry> list_geometries(const SceneSnapshot& snapshot, bool on_host) const;
-    ShownMesh mesh_of(const SceneSnapshot& snapshot, std::size_t instance) const;
-    bool is_filtered(const SnapshotInstance& instance) const;
-    void build_top_level();
-    kernels::SceneView host_view() const;
-    void set_shared(const SceneSnapshot& snapshot);
-    void set_lights(const SceneSnapshot& snapshot);
-    void set_camera(const SceneSnapshot& snapshot);
-    void set_previous(const SceneSnapshot& snapshot);
-    void set_requirements();
-
-    const Scene& scene_;
-    StructureBuilder& builder_;
-    UploadQueue& uploads_;
-    GpuMemory& memory_;
-    RigidMeshes rigid_;
-    BendingMeshes bending_;
-
-    // Of the host.
-    MaterialTable materials_;
-    LightTables lights_;
-    EmitterTables emitters_;
-    EnvironmentTables environment_;
-    InstanceTables tables_;
-    std::vector<kernels::Geometry> host_geometries_;
-    std::vector<kernels::Texture> host_textures_;
-    std::vector<bool> filtered_mesh_;  ///< [geometry]: some instance of it is filtered
-    std::vector<bool> filtered_bend_;  ///< [deformed mesh of the snapshot]
-
-    // Of the GPU.
-    std::vector<DeviceBuffer<std::uint8_t>> texels_;
-    DeviceTable<kernels::Texture> textures_;
-    DeviceTable<kernels::Vec3f> environment_texels_{MemoryUse::textures};
-    DeviceTable<float> environment_marginal_, environment_conditional_;
-    DeviceTable<kernels::Material> material_table_;
-    DeviceTable<kernels::Geometry> geometries_;
-    DeviceTable<kernels::Instance> instances_;
-    DeviceTable<kernels::InstanceMotion> motions_;
-    DeviceTable<kernels::Affine> matrices_{MemoryUse::motion}, previous_matrices_{MemoryUse::motion};
-    DeviceTable<kernels::TransformKey> keys_{MemoryUse::motion};
-    DeviceTable<kernels::Light> light_keys_;
-    DeviceTable<int> light_first_, light_key_count_;
-    DeviceTable<kernels::EmissiveTriangle> emissive_triangles_;
-    DeviceTable<float> emissive_cdf_, instance_density_;
-    DeviceTable<kernels::CameraKey> camera_keys_, previous_camera_;
-    DeviceTable<hiprt::Instance> hiprt_instances_{MemoryUse::motion};
-    DeviceTable<std::uint32_t> masks_{MemoryUse::motion};
-    DeviceTable<unsigned> instance_of_;
-    DeviceTable<kernels::TransformHeader> headers_{MemoryUse::motion};
-    DeviceTable<kernels::FrameSrt> srt_{MemoryUse::motion};
-    DeviceTable<kernels::FrameMatrix> frame_matrices_{MemoryUse::motion};
-    HiprtTopLevel top_;  ///< goes before the structures that it shows
-
-    kernels::SceneView view_{};
-    bool have_frame_ = false;
-    std::uint64_t geometry_key_ = 0;
-    RenderSpace space_;
-    bool cull_backfaces_ = false, asks_functions_ = false;
-    unsigned requirements_ = 0;
-    StructureCounts structures_;
+    SharedTables shared_;
+    std::unique_ptr<HiprtFrame> current_, next_;   ///< next_: null until a frame is staged
+    std::shared_ptr<const SceneSnapshot> staged_;  ///< what next_ shows; held, so that no other can have its address
 };
 
 }  // namespace kadr

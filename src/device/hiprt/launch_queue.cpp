@@ -10,9 +10,11 @@ unsigned blocks(int pixels, int block) { return static_cast<unsigned>((pixels + 
 }  // namespace
 
 bool LaunchQueue::run(GpuFunctionHandle function, kernels::LaunchParams params, const LaunchPiece& pass,
-                      const std::atomic<bool>* cancel, const std::function<void(double)>& progress) {
+                      const std::atomic<bool>* cancel, const std::function<void(double)>& progress,
+                      const std::function<void()>& idle) {
     LaunchPlanner planner(pass);
     for (int turn = 0;; turn = 1 - turn) {
+        if (idle && slots_[turn].pixel_samples > 0) idle();
         wait_for(slots_[turn]);
         if (is_set(cancel)) break;
         const std::optional<LaunchPiece> piece = planner.next(budget_);
@@ -20,6 +22,7 @@ bool LaunchQueue::run(GpuFunctionHandle function, kernels::LaunchParams params, 
         launch(function, params, *piece, slots_[turn]);
         if (progress) progress(planner.done());
     }
+    if (idle) idle();
     for (Slot& slot : slots_) wait_for(slot);
     return !is_set(cancel);
 }

@@ -18,9 +18,11 @@ public:
 
     /// @param params    of all launches; their rectangles and samples are filled in
     /// @param progress  called with 0..1 now and then; may be empty
+    /// @param idle      called before it waits for a launch, while others are on their way; may be empty
     /// @return false  when it was cancelled; nothing is running any more
     bool run(GpuFunctionHandle function, kernels::LaunchParams params, const LaunchPiece& pass,
-             const std::atomic<bool>* cancel, const std::function<void(double)>& progress);
+             const std::atomic<bool>* cancel, const std::function<void(double)>& progress,
+             const std::function<void()>& idle = {});
 
     const LaunchBudget& budget() const { return budget_; }
 

@@ -134,6 +134,9 @@ public:
         return result_of(oroEventRecord(event_of(event), stream_of(stream)));
     }
     GpuResult wait_for(GpuEventHandle event) override { return result_of(oroEventSynchronize(event_of(event))); }
+    GpuResult make_wait(GpuStreamHandle stream, GpuEventHandle event) override {
+        return result_of(oroStreamWaitEvent(stream_of(stream), event_of(event), 0));
+    }
     GpuResult query(GpuEventHandle event) override { return result_of(oroEventQuery(event_of(event))); }
     GpuResult elapsed(GpuEventHandle begin, GpuEventHandle end, double& seconds) override {
         float milliseconds = 0;

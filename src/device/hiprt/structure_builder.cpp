@@ -83,18 +83,20 @@ void StructureBuilder::update(const StructureJob& job, const hiprt::BuildOptions
           "update the structure of a bending mesh");
 }
 
-HiprtTopLevel StructureBuilder::build_top_level(const hiprt::SceneBuildInput& input,
-                                                const hiprt::BuildOptions& options) {
+void StructureBuilder::build_top_level(HiprtTopLevel& level, const hiprt::SceneBuildInput& input,
+                                       const hiprt::BuildOptions& options) {
     const hiprt::Api& api = context_.api();
     std::size_t scratch = 0;
     check(api.scene_temporary_size(context_.handle(), input, options, scratch),
           "ask how much scratch memory the structure of all instances takes");
     reserve_scratch(scratch);
-    HiprtTopLevel level(context_, memory_, input, options);
+    if (!level.fits(input, options)) {
+        level = {};
+        level = HiprtTopLevel(context_, memory_, input, options);
+    }
     check(api.build_scene(context_.handle(), hiprt::BuildOperation::build, input, options, scratch_.pointer(),
                           stream_.handle(), level.handle()),
           "build the structure of all instances");
-    return level;
 }
 
 }  // namespace kadr

@@ -39,7 +39,8 @@ public:
     /// New bounds for moved vertices of the same triangles. @param options  those that it was built with
     void update(const StructureJob& job, const hiprt::BuildOptions& options);
 
-    HiprtTopLevel build_top_level(const hiprt::SceneBuildInput& input, const hiprt::BuildOptions& options);
+    /// In the memory that it has where that is of the right size, else in new memory.
+    void build_top_level(HiprtTopLevel& level, const hiprt::SceneBuildInput& input, const hiprt::BuildOptions& options);
     void give_scratch_back() { scratch_ = {}; }
 
 private:

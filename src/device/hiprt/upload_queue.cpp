@@ -5,15 +5,15 @@
 
 namespace kadr {
 
-UploadQueue::UploadQueue(GpuRuntime& runtime, const GpuStream& stream)
-    : runtime_(runtime), stream_(stream), blocks_{Block(runtime), Block(runtime)} {}
+UploadQueue::UploadQueue(GpuRuntime& runtime, const GpuStream& stream, std::size_t block_bytes)
+    : runtime_(runtime), stream_(stream), blocks_{Block(runtime, block_bytes), Block(runtime, block_bytes)} {}
 
 void UploadQueue::add(DeviceAddress to, const void* from, std::size_t bytes) {
     const std::byte* source = static_cast<const std::byte*>(from);
     while (bytes > 0) {
-        if (blocks_[current_].used == kBlockBytes) next_block();
+        if (blocks_[current_].used == blocks_[current_].memory.bytes()) next_block();
         Block& block = blocks_[current_];
-        const std::size_t piece = std::min(bytes, kBlockBytes - block.used);
+        const std::size_t piece = std::min(bytes, block.memory.bytes() - block.used);
         std::memcpy(block.memory.data() + block.used, source, piece);
         check(runtime_.upload(to, block.memory.data() + block.used, piece, stream_.handle()), "copy data to the GPU");
         block.used += piece;

@@ -15,7 +15,8 @@ class UploadQueue {
 public:
     static constexpr std::size_t kBlockBytes = std::size_t{8} << 20;
 
-    UploadQueue(GpuRuntime& runtime, const GpuStream& stream);
+    /// @param block_bytes  of each block
+    UploadQueue(GpuRuntime& runtime, const GpuStream& stream, std::size_t block_bytes = kBlockBytes);
 
     /// Copies now into pinned memory, later (on the stream) to the GPU; `from` is free again on return.
     void add(DeviceAddress to, const void* from, std::size_t bytes);
@@ -26,7 +27,7 @@ public:
 
 private:
     struct Block {
-        explicit Block(GpuRuntime& runtime) : memory(runtime, kBlockBytes), sent(runtime) {}
+        Block(GpuRuntime& runtime, std::size_t bytes) : memory(runtime, bytes), sent(runtime) {}
         PinnedMemory memory;
         GpuEvent sent;
         std::size_t used = 0;
