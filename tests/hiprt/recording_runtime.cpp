@@ -5,12 +5,19 @@
 
 #include <fmt/format.h>
 
-#include "kernels/gpu/launch_params.h"
+#include "kernels/gpu/entry_points.h"
 
 namespace kadr::test {
 namespace {
 
 std::uintptr_t number_of(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
+
+/// Of a kernel's one argument; a test's own kernels take that of the integrators.
+std::size_t argument_bytes_of(const std::string& kernel) {
+    for (const kernels::EntryPoint& entry : kernels::kEntryPoints)
+        if (kernel == entry.name) return entry.argument_bytes;
+    return sizeof(kernels::LaunchParams);
+}
 
 }  // namespace
 
@@ -310,7 +317,7 @@ GpuResult RecordingRuntime::launch(GpuFunctionHandle handle, const LaunchSize& s
     if (arguments.size() != 1) fault("launch: kernels take one argument");
     if (function == functions_.end() || arguments.size() != 1) return {};
     const std::byte* argument = static_cast<const std::byte*>(arguments[0]);
-    const std::vector<std::byte> copy(argument, argument + sizeof(kernels::LaunchParams));
+    const std::vector<std::byte> copy(argument, argument + argument_bytes_of(function->second->name));
     // A kernel may read and write all that there is.
     std::vector<Range> uses;
     for (const auto& [address, block] : device_)

@@ -11,6 +11,7 @@
 #include "device/hiprt/gpu_film.h"
 #include "device/hiprt/hiprt_scene.h"
 #include "device/hiprt/launch_queue.h"
+#include "device/hiprt/ray_probe.h"
 #include "device/hiprt/trace_kernels.h"
 #include "device/sample_weight.h"
 #include "kernels/camera/filter_table.h"
@@ -52,7 +53,8 @@ public:
           choice_(parts.kernels),
           builder_(context_, memory_, stream_),
           film_(memory_, stream_),
-          launches_(*runtime_, stream_) {}
+          launches_(*runtime_, stream_),
+          probe_(memory_, uploads_, stream_, [this] { return probe_frame(); }) {}
 
     ~HiprtDevice() override { report(runtime_->make_current(), "use the GPU"); }
 
@@ -69,7 +71,7 @@ public:
         current(*runtime_);
         scene_.reset();
         with_memory("the scene",
-                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, uploads_); });
+                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, uploads_, kernels_); });
         if (build.quality == BuildQuality::low)
             while (scene_->quality() != StructureQuality::fast) scene_->lower_quality();
         stream_.synchronize("copy the scene to the GPU");
@@ -85,7 +87,7 @@ public:
         const kernels::IntegratorKind integrator = scene_->view().settings.integrator;
         const unsigned set = kernels::kernel_requirements(
             integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : scene_->requirements());
-        function_ = kernels_.get({integrator, set, scene_->asks_functions()});
+        function_ = kernels_.get({kernels::kernel_of(integrator), set, scene_->asks_functions()});
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
         kernels::build_filter(snapshot.settings.filter, snapshot.settings.filter_radius, filter_);
@@ -97,6 +99,7 @@ public:
         statistics_.instances = scene_->instance_count();
         statistics_.moving_instances = scene_->moving_count();
         statistics_.structures = scene_->structures();
+        statistics_.bending = scene_->bending();
         statistics_.set_frame_s = seconds_since(begin);
     }
 
@@ -115,8 +118,26 @@ public:
     }
 
     DeviceStatistics statistics() const override { return statistics_; }
+    Probe* probe() override { return &probe_; }
 
 private:
+    /// What rays of any kind need: the frame at hand, without a film.
+    kernels::LaunchParams frame_params() const {
+        kernels::LaunchParams params{};
+        params.scene = scene_->view();
+        params.top = scene_->top();
+        params.functions = scene_->asks_functions() ? functions_.handle() : nullptr;
+        params.instance_of = scene_->instance_of();
+        params.ray_mask = hiprt::kFullRayMask;
+        return params;
+    }
+
+    RayProbe::Frame probe_frame() {
+        current(*runtime_);
+        const unsigned set = kernels::kernel_requirements(kernels::Kernel::probe, scene_->requirements());
+        return {frame_params(), kernels_.get({kernels::Kernel::probe, set, scene_->asks_functions()})};
+    }
+
     /// Runs what may not fit into memory, with less and less around it: first the film is given back, to come in
     /// smaller parts; then structures are built at lower quality.
     template <class Action>
@@ -145,17 +166,12 @@ private:
         const std::size_t pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
         if (pass.active) active_.set(memory_, uploads_, {pass.active, pixels});
         counters_.set(memory_, uploads_, std::vector<kernels::LaunchCounters>(1, kernels::LaunchCounters{}));
-        kernels::LaunchParams params{};
-        params.scene = scene_->view();
-        params.top = scene_->top();
-        params.functions = scene_->asks_functions() ? functions_.handle() : nullptr;
-        params.instance_of = scene_->instance_of();
+        kernels::LaunchParams params = frame_params();
         params.filter = filter_table_.data();
         params.shutter = shutter_table_.data();
         params.active = pass.active ? active_.data() : nullptr;
         params.counters = static_cast<kernels::LaunchCounters*>(counters_.pointer());
         params.seed = kernels::seed_of_half(settings.seed, pass.half);
-        params.ray_mask = hiprt::kFullRayMask;
         params.centred = pass.total_samples == 1 && settings.integrator == kernels::IntegratorKind::direct;
         return params;
     }
@@ -220,6 +236,7 @@ private:
     DeviceTable<kernels::LaunchCounters> counters_;
     GpuFilm film_;
     LaunchQueue launches_;
+    RayProbe probe_;
     std::unique_ptr<HiprtScene> scene_;
 
     int most_rows_ = 1 << 30;             ///< of the film that are on the GPU at a time; learned when memory runs out

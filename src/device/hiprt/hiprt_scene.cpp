@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <set>
 
+#include "device/hiprt/sheared_motion.h"
 #include "device/tables/kernel_needs.h"
 
 namespace kadr {
 
-HiprtScene::HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads)
+HiprtScene::HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads, TraceKernels& kernels)
     : scene_(scene),
       builder_(builder),
       uploads_(uploads),
       memory_(builder.memory()),
       rigid_(scene, builder, uploads),
-      bending_(scene, builder, uploads),
+      bending_(scene, builder, uploads, [&kernels](kernels::Kernel kernel) { return kernels.get({kernel, 0, false}); }),
       materials_(scene) {
     if (environment) environment_ = EnvironmentTables(*environment);
     upload_once(scene);
@@ -35,7 +36,9 @@ void HiprtScene::upload_once(const Scene& scene) {
     environment_conditional_.set(memory_, uploads_, environment_.conditional());
 }
 
-void HiprtScene::set_frame(const SceneSnapshot& snapshot) {
+void HiprtScene::set_frame(const SceneSnapshot& given) {
+    const std::optional<SceneSnapshot> bent = bend_sheared_motion(given, scene_);
+    const SceneSnapshot& snapshot = bent ? *bent : given;
     const bool same_geometry = have_frame_ && snapshot.geometry_key == geometry_key_ &&
                                snapshot.space() == space_ && snapshot.settings.cull_backfaces == cull_backfaces_;
     // Until all is done there is no frame: whatever fails, the next call starts anew.
@@ -95,7 +98,7 @@ void HiprtScene::build_geometry(const SceneSnapshot& snapshot) {
     top_ = {};  // before the structures that it shows change
     bending_.forget(snapshot);
     require_meshes(snapshot);
-    tables_ = make_instance_tables(snapshot, scene_, [&](std::size_t i) { return mesh_of(snapshot, i); });
+    tables_ = make_instance_tables(snapshot, [&](std::size_t i) { return mesh_of(snapshot, i); });
     host_geometries_ = list_geometries(snapshot, true);
     materials_.note_shown(snapshot, tables_.instances, host_geometries_);
     instances_.set(memory_, uploads_, tables_.instances);

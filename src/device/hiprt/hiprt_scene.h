@@ -10,6 +10,7 @@
 #include "device/hiprt/device_table.h"
 #include "device/hiprt/instance_tables.h"
 #include "device/hiprt/rigid_meshes.h"
+#include "device/hiprt/trace_kernels.h"
 #include "device/tables/emitter_tables.h"
 #include "device/tables/environment_tables.h"
 #include "device/tables/light_tables.h"
@@ -24,7 +25,8 @@ namespace kadr {
 class HiprtScene {
 public:
     /// @param environment  the linear R, G, B of the environment's image; null: none
-    HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads);
+    /// @param kernels  compiles those that make the vertices of bending meshes
+    HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads, TraceKernels& kernels);
 
     /// On the stream of the builder, without waiting. After an exception the next call starts anew.
     /// @throws GpuOutOfMemory  lower_quality() may help
@@ -42,6 +44,7 @@ public:
     std::uint64_t instance_count() const { return tables_.shown.size(); }
     std::uint64_t moving_count() const { return tables_.moving; }
     const StructureCounts& structures() const { return structures_; }
+    const BendingCounts& bending() const { return bending_.counts(); }
     StructureQuality quality() const { return rigid_.quality(); }
 
 private:
