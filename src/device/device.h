@@ -90,7 +90,8 @@ struct DeviceRequest {
 
 struct DeviceChoice {
     std::unique_ptr<Device> device;
-    std::string why;  ///< "no GPU back end in this build"
+    std::string why;      ///< "no GPU back end in this build"
+    std::string warning;  ///< what is doubtful about it, in a sentence; empty: nothing
 };
 
 /// One line of `kadr devices`.

@@ -19,11 +19,11 @@ std::vector<std::string> unproven_on_gpu() {
         "every call of HIPRT and Orochi: they were made to fakes that check their arguments",
         "opening a real libhiprt, and the driver's libraries beside it",
         "compiling the kernels on the machine of a GPU, how long that takes, and the cache of what was compiled",
-        "that pictures are those of the CPU but for their noise",
+        "that pictures are those of the CPU but for their noise (kadr compare-devices SHOT finds out; the self-check of --device auto looks at a small part)",
         "speed: rays, building structures, what a frame costs beside its rays",
         "that launches stay below 0.1 s and that Ctrl-C is answered within 0.2 s",
         "the choice of build qualities: high and made small for rigid meshes, fast for bending ones and for all instances",
-        "meshes that bend while the shutter is open, which are boxes to HIPRT",
+        "meshes that bend: vertices and boxes made by our own kernels; while the shutter is open they are boxes to HIPRT",
         "when memory runs out: smaller tiles, structures of lower quality",
     };
 }

@@ -95,6 +95,12 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     : options_(options), events_(events), view_wanted_(prepared.view_wanted) {
     Shot& shot = prepared.shot;
     device_ = make_device(options.device);
+    if (!device_.warning.empty()) {
+        Diagnostic doubtful;
+        doubtful.found = device_.warning;
+        doubtful.warning = true;
+        warn({doubtful});
+    }
     open_image_io_in_background();
     if (shot.output.video)
         video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);
