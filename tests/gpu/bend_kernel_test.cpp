@@ -138,7 +138,9 @@ TEST(BendKernel, MakesTheProcessorsVerticesToTheLastBit) {
         const Bent bent(kind, seed++);
         EXPECT_EQ(std::memcmp(bent.vertices.data(), bent.mesh.vertices.data(), bent.vertices.size() * sizeof(kernels::Vertex)), 0) << kind.name;
         EXPECT_EQ(bent.tangents.size(), kind.tangents ? 3 * kVertices : 0u) << kind.name;
-        if (kind.tangents) EXPECT_EQ(std::memcmp(bent.tangents.data(), bent.mesh.tangents.data(), bent.tangents.size() * sizeof(kernels::Vec4f)), 0) << kind.name;
+        if (kind.tangents) {
+            EXPECT_EQ(std::memcmp(bent.tangents.data(), bent.mesh.tangents.data(), bent.tangents.size() * sizeof(kernels::Vec4f)), 0) << kind.name;
+        }
         const auto moved = [&](std::size_t v) { return bent.vertices[v].position.x != bent.geometry.positions[v].x; };
         EXPECT_TRUE(moved(0) && moved(kVertices - 1)) << kind.name;
     }
