@@ -28,7 +28,7 @@ struct RawOptions {
     std::string frame, threads, samples, exposure, pixels_per_degree;
     std::string time, frames, sheet, from;
     bool onion = false, path = false;
-    std::string limits, view, fps, time_budget_shot, sweep;
+    std::string limits, view, fps, time_budget_shot, sweep, devices, replicates;
 };
 
 int parse_number(const std::string& text, const std::string& option, const std::string& expected) {
@@ -177,6 +177,7 @@ private:
     void add_describe();
     void add_smoke();
     void add_compare();
+    void add_compare_devices();
     void add_measure();
     void add_info();
     void add_devices();
@@ -189,6 +190,7 @@ private:
     void fill_in();
     void fill_preview();
     void fill_compare();
+    void fill_compare_devices();
     void fill_measure();
     void fill_overrides(RenderOptions& options) const;
 
@@ -211,6 +213,7 @@ Parser::Parser() {
     add_describe();
     add_smoke();
     add_compare();
+    add_compare_devices();
     add_measure();
     add_info();
     add_devices();
@@ -344,6 +347,23 @@ void Parser::add_compare() {
                     fmt::format("how large the viewer sees a pixel (default: {:.6g})", options.difference.pixels_per_degree));
     add_device(app);
     app->add_flag("--json", invocation_.json, "one JSON object a line");
+}
+
+void Parser::add_compare_devices() {
+    CLI::App* app = add(Command::compare_devices, "compare-devices", "whether two devices render the same",
+                        "kadr compare-devices shots/turntable.yaml --size 320x180\n"
+                        "  kadr compare-devices shots/spin.yaml --devices cpu,exact --frames 12 --output parity    (exit code 1 where they differ)");
+    DeviceComparisonOptions& options = invocation_.compare_devices;
+    add_shot(app);
+    app->add_option("--devices", raw_.devices, "two of cpu, cpu:1, cpu:8 (lanes), hiprt, hiprt:N, exact (the reference in double) (default: cpu,hiprt)");
+    app->add_option("--frames", invocation_.render.overrides.frames, "frames to compare: 1-24x2,40 (default: the first, the middle and the last)");
+    app->add_option("--samples", raw_.samples, fmt::format("of a pixel in each replicate (default: {})", options.samples));
+    app->add_option("--replicates", raw_.replicates, fmt::format("renders of every frame by each device, with other random numbers (default: {})", options.replicates));
+    app->add_option("--size", raw_.size, "pixels, as in 320x180 (default: the shot's)");
+    add_set(app);
+    app->add_option("--output", options.output, "folder for both pictures, the maps of z and FLIP, and the report as JSON");
+    app->add_option("--threads", raw_.threads, "threads of the CPU (default: all)");
+    app->add_flag("--json", invocation_.json, "the report as a JSON object");
 }
 
 void Parser::add_measure() {
@@ -499,6 +519,17 @@ void Parser::fill_compare() {
     if (!raw_.pixels_per_degree.empty()) compare.difference.pixels_per_degree = parse_between(raw_.pixels_per_degree, "--pixels-per-degree", 1, 1000);
 }
 
+void Parser::fill_compare_devices() {
+    if (!commands_[Command::compare_devices]->parsed()) return;
+    DeviceComparisonOptions& compare = invocation_.compare_devices;
+    compare.render = invocation_.render;
+    if (!raw_.devices.empty()) compare.devices = parse_device_pair(raw_.devices);
+    if (compare.render.overrides.samples > 0) compare.samples = compare.render.overrides.samples;
+    if (compare.samples < 2) throw InputError(fmt::format("--samples is {}", compare.samples), "expected at least 2: one sample is a pixel's centre, which has no noise to compare");
+    if (!raw_.replicates.empty()) compare.replicates = parse_number(raw_.replicates, "--replicates", "expected a whole number of at least 3, as in --replicates 8");
+    if (compare.replicates < 3) throw InputError(fmt::format("--replicates is {}", compare.replicates), "expected a whole number of at least 3: fewer say too little about noise");
+}
+
 void Parser::fill_measure() {
     if (!commands_[Command::measure]->parsed()) return;
     invocation_.measure.render = invocation_.render;
@@ -510,6 +541,7 @@ void Parser::fill_in() {
     if (!raw_.time_budget_shot.empty()) invocation_.render.overrides.time_budget_shot = fmt::format("{} s", parse_duration(raw_.time_budget_shot, "--time-budget-shot"));
     fill_preview();
     fill_compare();
+    fill_compare_devices();
     fill_measure();
     invocation_.shots.assign(raw_.shots.begin(), raw_.shots.end());
     invocation_.smoke.shots = invocation_.shots;

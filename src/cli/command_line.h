@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "measure/compare_job.h"
+#include "measure/device_comparison.h"
 #include "measure/measure_job.h"
 #include "render/render_job.h"
 #include "render/smoke.h"
@@ -12,7 +13,7 @@
 
 namespace kadr {
 
-enum class Command { render, preview, check, explain, describe, smoke, compare, measure, info, devices, stress };
+enum class Command { render, preview, check, explain, describe, smoke, compare, compare_devices, measure, info, devices, stress };
 
 /// What the user asked for. Only the members of `command` are filled in.
 struct Invocation {
@@ -21,6 +22,7 @@ struct Invocation {
     PreviewOptions preview;
     SmokeOptions smoke;
     CompareOptions compare;
+    DeviceComparisonOptions compare_devices;
     MeasureOptions measure;
     stress::StressOptions stress;
     std::vector<std::filesystem::path> shots;    ///< check

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/device_comparison_text.h"
 #include "cli/explain_text.h"
 #include "cli/reporter.h"
 #include "device/device.h"
@@ -196,6 +197,21 @@ int run_compare(const Invocation& invocation) {
     return summary.failed ? kFailed : kDone;
 }
 
+int run_compare_devices(const Invocation& invocation) {
+    const DeviceComparison comparison = compare_devices(invocation.compare_devices, [&](const ComparedDeviceFrame& frame) {
+        if (invocation.json) return;
+        print(comparison_text(frame, invocation.compare_devices));
+        std::fflush(stdout);
+    });
+    if (invocation.json) {
+        print(json_of(comparison) + "\n");
+    } else {
+        if (!comparison.json.empty()) print(fmt::format("report: {}\n", comparison.json.string()));
+        print(comparison.verdict() + "\n");
+    }
+    return comparison.differs() ? kFailed : kDone;
+}
+
 std::string row_of(const MeasuredVariant& v) {
     return fmt::format("{:<26} {:>9.3f} {:>8.4f} {:>8.4f} {:>10.3g} {:>10.3g} {:>10.2g}\n", fmt::format("{} {}", v.variant.axis, v.variant.value), v.seconds, v.error.flip,
                        v.error.ssim, v.error.relmse, v.error.noise, v.error.bias);
@@ -336,6 +352,7 @@ int run_command(const Invocation& invocation) {
         {Command::render, run_render}, {Command::preview, run_preview}, {Command::check, run_check},
         {Command::explain, run_explain},
         {Command::describe, run_describe}, {Command::smoke, run_smoke}, {Command::compare, run_compare},
+        {Command::compare_devices, run_compare_devices},
         {Command::measure, run_measure}, {Command::info, run_info},
         {Command::devices, run_devices}, {Command::stress, run_stress},
     };

@@ -62,17 +62,33 @@ std::string memory_text(const DeviceStatistics& device) {
     return text;
 }
 
+/// "\n  bending 2 meshes, vertices by the device's kernels; blur by moving triangles, 3 keys in 1 part, 0.04 px off"; nothing
+/// where no mesh bends.
+std::string bending_text(const BendingCounts& bending, const MotionReport& motion) {
+    if (bending.meshes == 0) return "";
+    std::string text = fmt::format("\n  bending {} mesh{}, vertices ", bending.meshes, bending.meshes == 1 ? "" : "es");
+    if (bending.by_kernels == 0)
+        text += "by the host";
+    else if (bending.by_kernels == bending.meshes)
+        text += "by the device's kernels";
+    else
+        text += fmt::format("of {} by the device's kernels", bending.by_kernels);
+    if (bending.blurred == 0) return text + "; no blur of their own";
+    return text + fmt::format("; blur of {} by moving triangles, {} keys in {} part{} of the shutter, {:.3g} px off", bending.blurred, bending.keys, motion.parts,
+                              motion.parts == 1 ? "" : "s", motion.vertices_px);
+}
+
 std::string stats_line(const FrameReport& report) {
     const DeviceStatistics& device = report.device;
     const std::string by = report.device_name.empty() ? "" : fmt::format("  {}{}\n", report.device_name, memory_text(device));
     return by +
            fmt::format("  kernel needs {}, compiled for {}\n"
                        "  rays {}, samples {}, dropped {}, set-up {:.3f} s, trace {:.3f} s, instances {} ({} moving), "
-                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}\n  samples a pixel {}",
+                       "flattened triangles {}, structures {} built, {} updated, {} kept, motion error {}{}\n  samples a pixel {}",
                        names_of_requirements(device.required), names_of_requirements(device.compiled), device.rays,
                        device.pixel_samples, device.dropped_samples, device.set_frame_s, device.render_s,
                        device.instances, device.moving_instances, device.flattened_triangles, device.structures.built,
-                       device.structures.updated, device.structures.kept, motion_text(report.motion), sampling_text(report.sampling));
+                       device.structures.updated, device.structures.kept, motion_text(report.motion), bending_text(device.bending, report.motion), sampling_text(report.sampling));
 }
 
 /// "3 reused", "3 reused, 40 the same as another".
@@ -206,6 +222,7 @@ Json statistics_json(const DeviceStatistics& device) {
             {"instances", device.instances}, {"moving_instances", device.moving_instances},
             {"flattened_triangles", device.flattened_triangles},
             {"made_ahead", device.staged}, {"memory_steps", device.memory_steps},
+            {"bending", {{"meshes", device.bending.meshes}, {"by_kernels", device.bending.by_kernels}, {"blurred", device.bending.blurred}, {"keys", device.bending.keys}}},
             {"structures",
              {{"built", device.structures.built}, {"updated", device.structures.updated}, {"kept", device.structures.kept}}}};
 }

@@ -35,6 +35,15 @@ struct StructureCounts {
     bool operator==(const StructureCounts&) const = default;
 };
 
+/// How meshes that bend came to their places in the frame, of those that are shown.
+struct BendingCounts {
+    std::uint64_t meshes = 0;
+    std::uint64_t by_kernels = 0;  ///< whose vertices the device made itself, from poses
+    std::uint64_t blurred = 0;     ///< that bend while the shutter is open: triangles whose corners go straight from key to key
+    std::uint64_t keys = 0;        ///< most that one has
+    bool operator==(const BendingCounts&) const = default;
+};
+
 /// Counters since the last set_frame, but for the times of load.
 struct DeviceStatistics {
     unsigned required = 0;  ///< kernels::requirement bits that the frame needs
@@ -45,6 +54,7 @@ struct DeviceStatistics {
     std::string memory_steps;  ///< what was given up because memory was short, since load; empty: nothing
     std::uint64_t flattened_triangles = 0, instances = 0, moving_instances = 0;
     StructureCounts structures;
+    BendingCounts bending;
 };
 
 /// How acceleration structures are built, of a whole shot.
@@ -101,7 +111,8 @@ struct DeviceRequest {
 
 struct DeviceChoice {
     std::unique_ptr<Device> device;
-    std::string why;  ///< "no GPU back end in this build"
+    std::string why;      ///< "no GPU back end in this build"
+    std::string warning;  ///< what is doubtful about it, in a sentence; empty: nothing
 };
 
 /// One line of `kadr devices`.

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "device/device.h"
 #include "device/embree/embree_device.h"
+#include "device/gpu_choice.h"
 #include "device/hiprt/gpu_access.h"
 
 namespace kadr {
@@ -82,21 +83,20 @@ std::vector<int> gpu_numbers(const std::string& name) {
     }
 }
 
-DeviceChoice make_gpu(const std::string& name, int number, KernelChoice kernels) {
-    Found<std::unique_ptr<Device>> gpu = try_gpu(number, kernels);
-    if (const std::string* missing = std::get_if<std::string>(&gpu))
-        throw InputError(fmt::format("--device {}: {}", name, *missing),
-                         "use --device cpu, or --device auto, which takes the best that works");
-    return {std::move(std::get<std::unique_ptr<Device>>(gpu)), fmt::format("asked for by --device {}", name)};
-}
+DeviceChoice make_gpu(const std::string& name, int number, KernelChoice kernels) { return take_gpu(try_gpu(number, kernels), name, fault_of); }
 
 /// The GPU where it works, else the CPU; and why.
 DeviceChoice make_best_device(const DeviceRequest& request) {
     const KernelChoice kernels = choose_kernels(request.kernels);
-    Found<std::unique_ptr<Device>> gpu = try_gpu(0, kernels);
-    if (std::string* missing = std::get_if<std::string>(&gpu))
-        return {make_embree_device(request.threads, choose_width(request.width), kernels), std::move(*missing)};
-    return {std::move(std::get<std::unique_ptr<Device>>(gpu)), "the GPU works; --device cpu takes the CPU"};
+    return take_best(try_gpu(0, kernels), fault_of, [&] { return make_embree_device(request.threads, choose_width(request.width), kernels); });
+}
+
+/// What the self-check says of the GPU that `auto` would take.
+std::string check_of_first_gpu() {
+    const Found<StartedGpu> gpu = try_gpu(0, KernelChoice::needed);
+    if (const std::string* missing = std::get_if<std::string>(&gpu)) return *missing;
+    const std::string fault = fault_of(std::get<StartedGpu>(gpu));
+    return fault.empty() ? "" : fault + " in its self-check; --device hiprt takes it all the same";
 }
 
 std::string names_of(const std::vector<GpuProperties>& gpus) {
@@ -118,7 +118,7 @@ DeviceChoice make_device(const DeviceRequest& request) {
     if (request.name != "cpu")
         throw InputError(fmt::format("--device is '{}'", request.name), "expected auto, cpu, hiprt, hiprt:NUMBER or hiprt:NUMBER,NUMBER");
     return {make_embree_device(request.threads, choose_width(request.width), choose_kernels(request.kernels)),
-            "asked for by --device cpu"};
+            "asked for by --device cpu", ""};
 }
 
 std::vector<DeviceChoice> make_devices(const DeviceRequest& request) {
@@ -132,12 +132,13 @@ std::vector<DeviceChoice> make_devices(const DeviceRequest& request) {
 std::vector<DeviceReport> list_devices() {
     const int width = choose_width(0);
     const GpuList gpus = list_gpus();
+    const std::string fault = gpus.missing.empty() ? check_of_first_gpu() : gpus.missing;
     return {{"cpu",
              fmt::format("{}, {} threads, {} lane{}", processor_name(), std::thread::hardware_concurrency(), width,
                          width == 1 ? "" : "s"),
              true, ""},
             {"hiprt", gpus.gpus.empty() ? "AMD and NVIDIA GPUs through HIPRT and Orochi" : names_of(gpus.gpus),
-             gpus.missing.empty(), gpus.missing}};
+             fault.empty(), fault}};
 }
 
 }  // namespace kadr

@@ -125,8 +125,11 @@ std::shared_ptr<const DeformedMesh> make_mesh(const GeometryData& geometry, cons
     mesh->error_px = fitted.error_px;
     mesh->vertices.resize(count * fitted.keys.size());
     mesh->tangents.resize(geometry.tangents.size() * fitted.keys.size());
+    auto poses = std::make_shared<std::vector<VertexPose>>();
+    for (const DeformationPose& key : fitted.keys) poses->emplace_back(key, deformer.skinning);
+    mesh->poses = poses;
     for (std::size_t k = 0; k < fitted.keys.size(); ++k)
-        deform_vertices(geometry, VertexPose(fitted.keys[k], deformer.skinning), std::span(mesh->vertices).subspan(k * count, count),
+        deform_vertices(geometry, (*poses)[k], std::span(mesh->vertices).subspan(k * count, count),
                         std::span(mesh->tangents).subspan(k * geometry.tangents.size(), geometry.tangents.size()));
     return mesh;
 }

@@ -1,19 +1,8 @@
 #include "frame/motion_report.h"
 
-#include "frame/bindings.h"
-#include "frame/references.h"
+#include "frame/instance_name.h"
 
 namespace kadr {
-
-namespace {
-
-std::string name_of(const BoundShot& shot, const SnapshotInstance& instance) {
-    const InstanceSeed* seed = &shot.bindings().seed_of(instance.id);
-    const int file = shot.bindings().rig.file_of(seed->mesh_node);
-    return "node '" + node_path(shot.scene(), file, seed->mesh_node) + "'";
-}
-
-}  // namespace
 
 MotionReport motion_report(const BoundShot& shot, const std::vector<SceneSnapshot>& parts) {
     MotionReport report;
@@ -27,7 +16,7 @@ MotionReport motion_report(const BoundShot& shot, const std::vector<SceneSnapsho
         for (const auto& bent : part.deformed) report.vertices_px = std::max(report.vertices_px, bent->error_px);
         report.camera_px = std::max(report.camera_px, part.camera_error_px);
         if (report.met() || report.largest_px() <= before) continue;
-        report.worst = part.camera_error_px >= part.motion.max_error_px ? "the camera" : name_of(shot, part.instances[part.motion.worst]);
+        report.worst = part.camera_error_px >= part.motion.max_error_px ? "the camera" : "node '" + node_path_of(shot, part.instances[part.motion.worst]) + "'";
     }
     return report;
 }

@@ -12,7 +12,9 @@ namespace kadr {
 
 namespace {
 
+namespace skinning = kernels::skinning;
 using kernels::Affine;
+using kernels::DualQuaternionJoint;
 using kernels::Vec3f;
 using kernels::Vec4f;
 using kernels::Vertex;
@@ -28,11 +30,11 @@ Affine to_affine(const glm::dmat4& m) {
 
 DualQuaternionJoint to_dual_quaternion(const glm::dmat4& m) {
     Decomposition parts = decompose(m);
-    DualQuaternionJoint joint;
+    DualQuaternionJoint joint{};
     const glm::dquat r = parts.rotation;
     const glm::dquat d = glm::dquat(0, parts.translation.x, parts.translation.y, parts.translation.z) * r * 0.5;
-    joint.motion = {static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z), static_cast<float>(r.w),
-                    static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), static_cast<float>(d.w)};
+    const double motion[] = {r.x, r.y, r.z, r.w, d.x, d.y, d.z, d.w};
+    for (int i = 0; i < 8; ++i) joint.motion[i] = static_cast<float>(motion[i]);
     parts.rotation = glm::dquat(1, 0, 0, 0);
     parts.translation = glm::dvec3(0);
     joint.stretch = to_affine(compose(parts));
@@ -45,74 +47,6 @@ bool is_identity(const Affine& stretch) {
         for (int column = 0; column < 4; ++column)
             if (!(std::abs(stretch.m[row][column] - (row == column ? 1.0f : 0.0f)) <= 1e-7f)) return false;
     return true;
-}
-
-Vec3f point(const Affine& a, Vec3f p) {
-    return {a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3], a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
-            a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
-}
-Vec3f vector(const Affine& a, Vec3f p) {
-    return {a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z, a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z,
-            a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z};
-}
-/// By the cofactors: the inverse transpose times the determinant, right wherever there is an inverse.
-Vec3f normal(const Affine& a, Vec3f n) {
-    const Vec3f r0{a.m[0][0], a.m[0][1], a.m[0][2]}, r1{a.m[1][0], a.m[1][1], a.m[1][2]}, r2{a.m[2][0], a.m[2][1], a.m[2][2]};
-    const Vec3f c0 = cross(r1, r2);
-    const Vec3f result{dot(c0, n), dot(cross(r2, r0), n), dot(cross(r0, r1), n)};
-    return dot(c0, r0) < 0 ? result * -1.0f : result;
-}
-Vec3f unit_or_zero(Vec3f v) {
-    const float squared = dot(v, v);
-    return squared > 1e-30f ? v * (1.0f / std::sqrt(squared)) : Vec3f{0, 0, 0};
-}
-bool mirrors(const Affine& a) { return dot(cross(Vec3f{a.m[0][0], a.m[0][1], a.m[0][2]}, Vec3f{a.m[1][0], a.m[1][1], a.m[1][2]}), Vec3f{a.m[2][0], a.m[2][1], a.m[2][2]}) < 0; }
-
-/// The mean of the joints' matrices.
-Affine blend(std::span<const Affine> joints, const std::uint16_t* joint, const float* weight, int slots) {
-    Affine sum{};
-    for (int slot = 0; slot < slots && weight[slot] > 0; ++slot) {
-        const float* from = &joints[joint[slot]].m[0][0];
-        float* to = &sum.m[0][0];
-        for (int i = 0; i < 12; ++i) to[i] += weight[slot] * from[i];  // three vectors of four
-    }
-    return sum;
-}
-
-/// A blended rigid motion as a matrix.
-Affine rigid_blend(std::span<const DualQuaternionJoint> joints, const std::uint16_t* joint, const float* weight, int slots) {
-    float q[8] = {};
-    const DualQuaternionJoint& pivot = joints[joint[0]];
-    for (int slot = 0; slot < slots && weight[slot] > 0; ++slot) {
-        const DualQuaternionJoint& from = joints[joint[slot]];
-        float cosine = 0;
-        for (int i = 0; i < 4; ++i) cosine += pivot.motion[static_cast<std::size_t>(i)] * from.motion[static_cast<std::size_t>(i)];
-        const float w = cosine < 0 ? -weight[slot] : weight[slot];  // q and -q are one rotation: take the nearer
-        for (int i = 0; i < 8; ++i) q[i] += w * from.motion[static_cast<std::size_t>(i)];
-    }
-    const float scale = 1.0f / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (float& value : q) value *= scale;
-    const float x = q[0], y = q[1], z = q[2], w = q[3];
-    const Vec3f r{x, y, z}, d{q[4], q[5], q[6]};
-    const Vec3f t = (d * w - r * q[7] + cross(r, d)) * 2.0f;
-    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t.x},
-             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t.y},
-             {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t.z}}};
-}
-
-/// A blended rigid motion, with the blended stretch before it.
-Affine stretched_blend(std::span<const DualQuaternionJoint> joints, const std::uint16_t* joint, const float* weight, int slots) {
-    Affine stretch{};
-    for (int slot = 0; slot < slots && weight[slot] > 0; ++slot)
-        for (int i = 0; i < 12; ++i) (&stretch.m[0][0])[i] += weight[slot] * (&joints[joint[slot]].stretch.m[0][0])[i];
-    const Affine rigid = rigid_blend(joints, joint, weight, slots);
-    Affine a;
-    for (int row = 0; row < 3; ++row) {
-        const float* r = rigid.m[row];
-        for (int c = 0; c < 3; ++c) a.m[row][c] = r[0] * stretch.m[0][c] + r[1] * stretch.m[1][c] + r[2] * stretch.m[2][c];
-        a.m[row][3] = r[3];
-    }
-    return a;
 }
 
 /// Some vertices of a mesh after its morph targets.
@@ -158,8 +92,9 @@ public:
         if (single_) return pose_.matrices()[0];
         const std::size_t first = vertex * static_cast<std::size_t>(skin_.per_vertex);
         if (pose_.skinning() == Skinning::dual_quaternion)
-            return (pose_.stretches() ? stretched_blend : rigid_blend)(pose_.dual_quaternions(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
-        return blend(pose_.matrices(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
+            return pose_.stretches() ? skinning::stretched_blend(pose_.dual_quaternions().data(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex)
+                                     : skinning::rigid_blend(pose_.dual_quaternions().data(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
+        return skinning::blend(pose_.matrices().data(), &skin_.joints[first], &skin_.weights[first], skin_.per_vertex);
     }
 
 private:
@@ -176,14 +111,10 @@ void deform_block(const GeometryData& g, const VertexPose& pose, std::size_t beg
     const Vec3f* normals = g.normals.empty() ? nullptr : morphs ? block.normals.data() : g.normals.data() + begin;
     for (std::size_t v = begin; v < end; ++v) {
         const Affine a = carrier.at(v);
-        Vertex& out = vertices[v];
-        out.position = point(a, positions[v - begin]);
-        out.normal = normals ? unit_or_zero(normal(a, normals[v - begin])) : Vec3f{0, 0, 0};
-        out.uv = g.uv[0].empty() ? kernels::Vec2f{0, 0} : g.uv[0][v];
+        vertices[v] = skinning::carried_vertex(a, positions[v - begin], normals ? normals[v - begin] : Vec3f{0, 0, 0}, g.uv[0].empty() ? kernels::Vec2f{0, 0} : g.uv[0][v]);
         if (tangents.empty()) continue;
         const Vec4f t = g.tangents[v];
-        const Vec3f d = unit_or_zero(vector(a, morphs ? block.tangents[v - begin] : Vec3f{t.x, t.y, t.z}));
-        tangents[v] = {d.x, d.y, d.z, mirrors(a) ? -t.w : t.w};
+        tangents[v] = skinning::carried_tangent(a, morphs ? block.tangents[v - begin] : Vec3f{t.x, t.y, t.z}, t.w);
     }
 }
 
@@ -213,7 +144,7 @@ void deform_positions(const GeometryData& geometry, const VertexPose& pose, std:
     const Carrier carrier(geometry, pose);
     const Morphed block = weighs(pose) ? morph(geometry, pose.weights(), begin, begin + positions.size(), Morphs::positions) : Morphed{};
     const Vec3f* from = block.positions.empty() ? geometry.positions.data() + begin : block.positions.data();
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = point(carrier.at(begin + i), from[i]);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = skinning::point(carrier.at(begin + i), from[i]);
 }
 
 }  // namespace kadr

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
 
-#include "kernels/scene/scene_types.h"
-#include "kernels/scene/scene_view.h"
+#include "kernels/deform/skinning.h"
 #include "scene/scene.h"
 #include "shot/shot.h"
 
@@ -22,18 +20,12 @@ struct DeformationPose {
     bool operator==(const DeformationPose&) const = default;
 };
 
-/// A rigid motion as a unit dual quaternion, after a stretch (scale and shear, linear).
-struct DualQuaternionJoint {
-    kernels::Affine stretch;
-    std::array<float, 8> motion{};  ///< real part x y z w, dual part x y z w
-};
-
 /// A pose as the vertex loops read it.
 class VertexPose {
 public:
     VertexPose(const DeformationPose& pose, Skinning skinning);
     std::span<const kernels::Affine> matrices() const { return matrices_; }
-    std::span<const DualQuaternionJoint> dual_quaternions() const { return dual_quaternions_; }
+    std::span<const kernels::DualQuaternionJoint> dual_quaternions() const { return dual_quaternions_; }
     bool stretches() const { return stretches_; }  ///< whether a joint of dual-quaternion skinning does more than move
     std::span<const float> weights() const { return weights_; }
     Skinning skinning() const { return skinning_; }
@@ -41,7 +33,7 @@ public:
 private:
     Skinning skinning_;
     std::vector<kernels::Affine> matrices_;
-    std::vector<DualQuaternionJoint> dual_quaternions_;  ///< filled for dual-quaternion skinning
+    std::vector<kernels::DualQuaternionJoint> dual_quaternions_;  ///< filled for dual-quaternion skinning
     bool stretches_ = false;
     std::vector<float> weights_;
 };
@@ -49,8 +41,7 @@ private:
 /// The vertices of a mesh in a pose: morph targets first, then the joints (glTF 2.0, 3.7.2.2), in parallel.
 ///
 /// Linear skinning blends the joints' matrices; normals go by the cofactors of the blend. Dual-quaternion skinning blends
-/// unit dual quaternions, the stretches of the joints linearly before them.
-/// Source: Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008, 4 (antipodality: 4.1).
+/// unit dual quaternions, the stretches of the joints linearly before them (kernels/deform/skinning.h).
 /// Normals are unit, or zero where the mesh is flat; texture coordinates are copied.
 /// @param vertices  [vertex], written whole
 /// @param tangents  [vertex], or empty where the mesh has none

@@ -34,6 +34,8 @@ struct MotionFrames {
     std::uint32_t worst = 0;                        ///< index of the instance that has max_error_px
 };
 
+class VertexPose;
+
 /// A mesh that bends, over the part of the shutter: its vertices at evenly spaced times of [0, 1], in the normalised
 /// coordinates that world_from_geometry of its instances speaks of. Triangles, texture coordinates and colours are those
 /// of its geometry. Never changes once made, so snapshots and devices share it.
@@ -43,6 +45,9 @@ struct DeformedMesh {
     std::uint32_t key_count = 1;             ///< one: it keeps its shape
     std::vector<kernels::Vertex> vertices;   ///< [key][vertex]
     std::vector<kernels::Vec4f> tangents;    ///< [key][vertex]; empty where the geometry has none
+    /// [key] what vertices and tangents were made from (frame/skinning.h): a device may make them again, to the same
+    /// bits, where they are needed. Null: they came from elsewhere.
+    std::shared_ptr<const std::vector<VertexPose>> poses;
     std::uint64_t version = 0;               ///< equal for equal vertices of one number
     double error_px = 0;                     ///< largest deviation of the linear way between keys from the true one
 };

@@ -74,6 +74,10 @@ void add(DeviceStatistics& sum, const DeviceStatistics& part) {
     sum.flattened_triangles = std::max(sum.flattened_triangles, part.flattened_triangles);
     sum.instances = std::max(sum.instances, part.instances);
     sum.moving_instances = std::max(sum.moving_instances, part.moving_instances);
+    sum.bending.meshes = std::max(sum.bending.meshes, part.bending.meshes);
+    sum.bending.by_kernels = std::max(sum.bending.by_kernels, part.bending.by_kernels);
+    sum.bending.blurred = std::max(sum.bending.blurred, part.bending.blurred);
+    sum.bending.keys = std::max(sum.bending.keys, part.bending.keys);
     sum.structures.built += part.structures.built;
     sum.structures.updated += part.structures.updated;
     sum.structures.kept += part.structures.kept;

@@ -102,6 +102,13 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     : options_(options), events_(events), view_wanted_(prepared.view_wanted) {
     Shot& shot = prepared.shot;
     devices_ = make_devices(options.device);
+    for (const DeviceChoice& choice : devices_) {
+        if (choice.warning.empty()) continue;
+        Diagnostic doubtful;
+        doubtful.found = choice.warning;
+        doubtful.warning = true;
+        warn({doubtful});
+    }
     open_image_io_in_background();
     if (shot.output.video)
         video_ = plan_video(*shot.output.video, shot.image.width, shot.image.height, shot.timing.fps);

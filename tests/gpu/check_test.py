@@ -56,7 +56,7 @@ class Sources(unittest.TestCase):
         self.assertEqual(check.requirement_bits(), {"maps": 1, "transforms": 2, "emitters": 4, "deformation": 8, "specials": 16})
 
     def test_functions_of_every_geometry_type_are_declared_and_called(self):
-        text = check.prologue()
+        text = check.prologue("path")
         self.assertEqual(text.count("case 0: return kadr_alpha_filter"), 1)
         self.assertEqual(text.count("case 1: return kadr_alpha_filter"), 1)
         self.assertEqual(text.count("case 1: return kadr_moving_triangle"), 1)

@@ -19,9 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As in the list: the integrator and the names of the requirements.
-std::string name_of(kernels::IntegratorKind integrator, unsigned requirements) {
-    return (integrator == kernels::IntegratorKind::path ? "path: " : "direct: ") + names_of_requirements(requirements);
+/// As in the list: the kernel and the names of its requirements.
+std::string name_of(kernels::Kernel kernel, unsigned required) {
+    const std::string name = kernels::entry_point(kernel).name;
+    return name.substr(name.find('_') + 1) + ": " + names_of_requirements(kernels::kernel_requirements(kernel, required));
 }
 
 std::set<std::string> listed() {
@@ -45,8 +46,11 @@ std::set<std::string> required(RTCDevice device, const fs::path& file) {
             scene.set_frame(part);
             EXPECT_EQ(kernel_requirements_of(loaded.scene(), part), scene.requirements()) << file << ", frame " << frame << ", found without building it";
             const unsigned needs = scene.requirements() | kernels::requirement::kTransforms;
-            const kernels::IntegratorKind integrator = part.settings.integrator;
-            sets.insert(name_of(integrator, kernels::kernel_requirements(integrator, needs)));
+            sets.insert(name_of(kernels::kernel_of(part.settings.integrator), needs));
+            sets.insert(name_of(kernels::Kernel::probe, needs));
+            if (part.deformed.empty()) continue;
+            sets.insert(name_of(kernels::Kernel::bend, needs));
+            sets.insert(name_of(kernels::Kernel::boxes, needs));
         }
     return sets;
 }
@@ -54,7 +58,7 @@ std::set<std::string> required(RTCDevice device, const fs::path& file) {
 TEST(SampleSets, AreThoseThatAreCompiledForGpus) {
     const EmbreeDeviceHandle device(rtcNewDevice(nullptr));
     const std::set<std::string> compiled = listed();
-    std::set<std::string> all{name_of(kernels::IntegratorKind::path, kernels::requirement::kAll)};
+    std::set<std::string> all{name_of(kernels::Kernel::path, kernels::requirement::kAll)};
     for (const auto& entry : fs::directory_iterator(fs::path(KADR_SOURCE_DIR) / "shots")) {
         if (entry.path().extension() != ".yaml" || entry.path().stem() == "reel") continue;
         for (const std::string& set : required(device.get(), entry.path())) {

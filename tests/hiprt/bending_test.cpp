@@ -1,9 +1,13 @@
 // Meshes that bend, on the GPU: their vertices are copied, their structures updated or built anew.
 
+#include <algorithm>
+#include <cstring>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "device/small_scene.h"
+#include "frame/skinning.h"
 #include "fake_gpu.h"
 
 namespace kadr::test {
@@ -155,6 +159,58 @@ TEST(BendingOnGpu, BlurredMeshesAreBoxesAroundAllThatTheirTrianglesPass) {
     EXPECT_EQ(b.gpu.hiprt.geometries.begin()->second.input.type, hiprt::PrimitiveType::triangle_mesh);
     b.render();
     EXPECT_EQ(b.complaints(), "");
+}
+
+/// From poses, the GPU makes the vertices: those of the host, which only the choice between update and build reads, are
+/// other ones here.
+TEST(BendingOnGpu, PosesAreBentByKernelsToTheProcessorsVertices) {
+    for (const unsigned keys : {1u, 3u}) {
+        Bending b;
+        GeometryData& square = b.s.scene.geometries[0];
+        square.normals.assign(4, {0, 0, 1});
+        square.tangents.assign(4, {1, 0, 0, 1});
+        square.skin = {2, {0, 1, 1, 0, 0, 1, 1, 0}, {0.5f, 0.5f, 1, 0, 0.75f, 0.25f, 1, 0}};
+        square.targets.resize(1);
+        square.targets[0].vertices = {1, 3};
+        square.targets[0].positions = {{0, 0, 0.5f}, {0, 0.25f, 0}};
+        b.device->load(b.s.scene, nullptr);
+        auto mesh = std::make_shared<DeformedMesh>();
+        auto poses = std::make_shared<std::vector<VertexPose>>();
+        std::vector<kernels::Vertex> expected(std::size_t{4} * keys);
+        std::vector<kernels::Vec4f> tangents(expected.size());
+        for (std::size_t k = 0; k < keys; ++k) {
+            const double turn = 0.4 * static_cast<double>(k) + 0.2;
+            DeformationPose pose;
+            pose.joints = {glm::rotate(glm::dmat4(1), turn, glm::dvec3(0, 1, 0)), glm::translate(glm::dmat4(1), glm::dvec3(0, turn, 0))};
+            pose.weights = {turn};
+            poses->emplace_back(pose, keys == 1 ? Skinning::linear : Skinning::dual_quaternion);
+            deform_vertices(square, poses->back(), std::span(expected).subspan(4 * k, 4), std::span(tangents).subspan(4 * k, 4));
+        }
+        mesh->number = 7;
+        mesh->version = 1;
+        mesh->key_count = keys;
+        mesh->poses = poses;
+        mesh->vertices.assign(expected.size(), {{1, 2, 3}, {0, 0, 1}, {9, 9}});
+        mesh->tangents.assign(expected.size(), {0, 0, 0, 0});
+        b.s.snapshot.deformed = {mesh};
+        ++b.s.snapshot.geometry_key;
+        b.device->set_frame(b.s.snapshot);
+        EXPECT_EQ(b.device->statistics().bending, (BendingCounts{1, 1, keys > 1 ? 1u : 0u, keys}));
+        b.render();
+        const kernels::SceneView& view = b.gpu.launches.back().scene;
+        const kernels::Geometry& bent = view.geometries[view.instances[0].geometry];
+        EXPECT_EQ(std::memcmp(bent.vertices, expected.data(), expected.size() * sizeof(kernels::Vertex)), 0);
+        EXPECT_EQ(std::memcmp(bent.tangents, tangents.data(), tangents.size() * sizeof(kernels::Vec4f)), 0);
+        if (keys > 1) {
+            const float* box = static_cast<const float*>(b.gpu.hiprt.geometries.begin()->second.input.list.boxes);
+            float low = expected[0].position.y;
+            for (std::size_t k = 0; k < keys; ++k)
+                for (const std::size_t v : {0u, 1u, 2u}) low = std::min(low, expected[4 * k + v].position.y);
+            EXPECT_NEAR(box[1], low, 1e-5);
+        }
+        EXPECT_EQ(b.gpu.runtime->count("launch"), keys > 1 ? 3u : 2u);  // the vertices, the boxes, the picture
+        EXPECT_EQ(b.complaints(), "");
+    }
 }
 
 TEST(BendingOnGpu, PlacesOneFrameEarlier) {

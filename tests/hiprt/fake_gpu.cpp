@@ -11,9 +11,8 @@ using namespace kernels;
 
 FakeGpu::FakeGpu() {
     runtime->on_launch = [this](const std::string& function, const std::byte* argument) {
-        LaunchParams params;
-        std::memcpy(static_cast<void*>(&params), argument, sizeof params);
-        return run(function, params);
+        if (const std::optional<double> other = run_other(function, argument)) return *other;
+        return run(function, argument_of<LaunchParams>(argument));
     };
 }
 
@@ -36,7 +35,8 @@ std::string FakeGpu::complaints() const {
 double FakeGpu::run(const std::string& function, const LaunchParams& params) {
     if (function != "kadr_path" && function != "kadr_direct")
         runtime->fault("launch: not a kernel of ours: " + function);
-    check_addresses(params);
+    check_film(params);
+    check_frame(params);
     launches.push_back(params);
     std::int64_t samples = 0;
     const auto width = static_cast<std::size_t>(params.scene.settings.width);
@@ -64,7 +64,64 @@ double FakeGpu::run(const std::string& function, const LaunchParams& params) {
     return static_cast<double>(samples) * seconds_a_sample;
 }
 
-void FakeGpu::check_addresses(const LaunchParams& params) {
+std::optional<double> FakeGpu::run_other(const std::string& function, const std::byte* argument) {
+    if (function == entry_point(Kernel::probe).name) return run_probe(argument_of<ProbeParams>(argument));
+    if (function == entry_point(Kernel::bend).name) return run_bend(argument_of<BendParams>(argument));
+    if (function == entry_point(Kernel::boxes).name) return run_boxes(argument_of<BoxParams>(argument));
+    return std::nullopt;
+}
+
+double FakeGpu::run_bend(const BendParams& params) {
+    const RestMesh& rest = params.rest;
+    const std::size_t vertices = rest.vertex_count, keys = params.poses.key_count, joints = keys * params.poses.joint_count;
+    expect(rest.positions, vertices, "positions at rest");
+    if (rest.normals) expect(rest.normals, vertices, "normals at rest");
+    if (rest.tangents) expect(rest.tangents, vertices, "tangents at rest");
+    if (rest.uv) expect(rest.uv, vertices, "texture coordinates at rest");
+    const std::size_t slots = vertices * static_cast<std::size_t>(rest.slots);
+    if (rest.slots > 0) expect(rest.joints, slots, "joints of vertices");
+    if (rest.slots > 0) expect(rest.joint_weights, slots, "weights of joints");
+    if (rest.morph_first) {
+        expect(rest.morph_first, vertices + 1, "places of morph entries");
+        expect(rest.morphs, rest.morph_first[vertices], "morph entries");
+        expect(rest.morph_parts, params.poses.target_count, "parts of morph targets");
+        expect(params.poses.morph_weights, keys * params.poses.target_count, "morph weights");
+    }
+    expect(params.poses.matrices, joints, "joint matrices");
+    if (params.poses.dual_quaternions) expect(params.poses.dual_quaternions, joints, "dual quaternions");
+    expect(params.poses.stretches, keys, "stretches");
+    expect(params.vertices, vertices * keys, "bent vertices");
+    if (params.tangents) expect(params.tangents, vertices * keys, "bent tangents");
+    for (std::size_t i = 0; i < vertices * keys; ++i) bend_vertex(params, i);
+    return 1e-6;
+}
+
+double FakeGpu::run_boxes(const BoxParams& params) {
+    check_geometry(params.geometry);
+    expect(params.boxes, params.geometry.triangle_count, "boxes");
+    for (unsigned t = 0; t < params.geometry.triangle_count; ++t) params.boxes[t] = box_of(params.geometry, t);
+    return 1e-6;
+}
+
+double FakeGpu::run_probe(const ProbeParams& params) {
+    check_frame(params.frame);
+    probes.push_back(params);
+    if (params.film_px) {
+        expect(params.film_px, params.count, "places on the film");
+        expect(params.hits, params.count, "hits");
+    } else {
+        expect(params.shadows, params.count, "shadow rays");
+        expect(params.occluded, params.count, "answers of shadow rays");
+    }
+    for (unsigned i = 0; i < params.count; ++i)
+        if (params.film_px)
+            params.hits[i] = {-1, -1, 0, 0, 0, {0, 0, 0}, {0, 0, 0}};
+        else
+            params.occluded[i] = 1;
+    return params.count * 1e-9;
+}
+
+void FakeGpu::check_film(const LaunchParams& params) {
     const auto width = static_cast<std::size_t>(params.scene.settings.width);
     const auto rows = static_cast<std::size_t>(params.y1 - params.y0),
                first = static_cast<std::size_t>(params.y0) * width;
@@ -81,6 +138,9 @@ void FakeGpu::check_addresses(const LaunchParams& params) {
     expect(params.filter, 1, "the filter");
     expect(params.shutter, 1, "the shutter");
     expect(params.counters, 1, "the counters");
+}
+
+void FakeGpu::check_frame(const LaunchParams& params) {
     if (!params.top) return;
     const auto scene = hiprt.scenes.find(static_cast<hiprt::Scene>(const_cast<void*>(params.top)));
     if (scene == hiprt.scenes.end() || !scene->second.built)

@@ -100,7 +100,7 @@ TEST(FrameFarm, TwoGpusRenderWhatOneDoes) {
     right.runtime->compute = 80;  // another kind of GPU
     const auto gpus = [](std::initializer_list<TracingGpu*> all) {
         std::vector<DeviceChoice> devices;
-        for (TracingGpu* gpu : all) devices.push_back({gpu->make(), "a test"});
+        for (TracingGpu* gpu : all) devices.push_back({gpu->make(), "a test", ""});
         return devices;
     };
     const Rendered one = render(shot, gpus({&alone})), two = render(shot, gpus({&left, &right}));
@@ -115,8 +115,8 @@ TEST(FrameFarm, AGpuThatFailsSaysSo) {
     const ShotFile shot;
     TracingGpu left, right;
     std::vector<DeviceChoice> devices;
-    devices.push_back({left.make(), "a test"});
-    devices.push_back({right.make(), "a test"});
+    devices.push_back({left.make(), "a test", ""});
+    devices.push_back({right.make(), "a test", ""});
     right.runtime->capacity = right.runtime->in_use() + 100;  // enough to start, too little for any frame
     try {
         render(shot, std::move(devices));

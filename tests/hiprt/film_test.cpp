@@ -34,7 +34,7 @@ struct RoundingGpu : FakeGpu {
                         params.film.beauty[pixel].alpha += 1;
                         ++params.film.samples[pixel];
                         params.film.weights[pixel] += value * value;
-                        params.film.surface[pixel].depth += value;
+                        params.film.depth[pixel] += value;
                     }
             return 1e-9;
         };

@@ -129,28 +129,29 @@ TEST(TraceKernels, NamesChangeWithEverySourceAndOption) {
     const auto module = [&](const KernelNeed& need) {
         return TraceKernels(*compiler.context, folder.path).source_of(need).module;
     };
-    const KernelNeed plain{kernels::IntegratorKind::path, 2, false};
+    const KernelNeed plain{kernels::Kernel::path, 2, false};
     const std::string first = module(plain);
     EXPECT_EQ(module(plain), first);
-    std::set<std::string> names{first, module({kernels::IntegratorKind::direct, 2, false}),
-                                module({kernels::IntegratorKind::path, 3, false}),
-                                module({kernels::IntegratorKind::path, 2, true})};
+    std::set<std::string> names{first, module({kernels::Kernel::direct, 2, false}),
+                                module({kernels::Kernel::path, 3, false}),
+                                module({kernels::Kernel::probe, 2, false}),
+                                module({kernels::Kernel::path, 2, true})};
     folder.write("kernels/gpu/b.h", "c");
     names.insert(module(plain));
     folder.write("kernels/gpu/b.h", "b");
     EXPECT_EQ(module(plain), first);
     folder.write("kernels/new.h", "");
     names.insert(module(plain));
-    EXPECT_EQ(names.size(), 6u);
+    EXPECT_EQ(names.size(), 7u);
 }
 
 TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
     Compiler compiler;
     TraceKernels kernels(*compiler.context, KADR_SOURCE_DIR);
-    const KernelNeed need{kernels::IntegratorKind::path, 6, true};
+    const KernelNeed need{kernels::Kernel::path, 6, true};
     const hiprt::Function function = kernels.get(need);
     EXPECT_EQ(kernels.get(need), function);
-    EXPECT_NE(kernels.get({kernels::IntegratorKind::direct, 2, false}), function);
+    EXPECT_NE(kernels.get({kernels::Kernel::direct, 2, false}), function);
     EXPECT_EQ(compiler.runtime.count("build_trace_kernels"), 2u);
     ASSERT_EQ(compiler.fake.modules.size(), 2u);
     const test::FakeHiprt::ModuleRecord& module = compiler.fake.modules.at(kernels.source_of(need).module);
@@ -164,7 +165,7 @@ TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
 
 KernelSource source_for(GpuVendor vendor) {
     Compiler compiler(vendor);
-    return TraceKernels(*compiler.context, KADR_SOURCE_DIR).source_of({kernels::IntegratorKind::path, 2, false});
+    return TraceKernels(*compiler.context, KADR_SOURCE_DIR).source_of({kernels::Kernel::path, 2, false});
 }
 
 TEST(TraceKernels, EachVendorsCompilerGetsItsOptions) {
@@ -180,7 +181,7 @@ TEST(TraceKernels, AFailedCompilationIsAnError) {
     TraceKernels kernels(*compiler.context, KADR_SOURCE_DIR);
     compiler.runtime.failing_call = static_cast<int>(compiler.runtime.calls.size());
     try {
-        kernels.get({kernels::IntegratorKind::direct, 2, false});
+        kernels.get({kernels::Kernel::direct, 2, false});
         FAIL();
     } catch (const RenderError& error) {
         EXPECT_THAT(error.what(),

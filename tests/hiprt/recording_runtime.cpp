@@ -6,12 +6,67 @@
 
 #include <fmt/format.h>
 
-#include "kernels/gpu/launch_params.h"
+#include "kernels/gpu/entry_points.h"
 
 namespace kadr::test {
 namespace {
 
 std::uintptr_t number_of(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
+
+/// Of a kernel's one argument; a test's own kernels take that of the integrators.
+std::size_t argument_bytes_of(const std::string& kernel) {
+    for (const kernels::EntryPoint& entry : kernels::kEntryPoints)
+        if (kernel == entry.name) return entry.argument_bytes;
+    return sizeof(kernels::LaunchParams);
+}
+
+template <class T>
+T argument_of(const std::vector<std::byte>& bytes) {
+    T argument;
+    std::memcpy(static_cast<void*>(&argument), bytes.data(), sizeof argument);
+    return argument;
+}
+
+using Ranges = std::vector<Range>;
+
+template <class T>
+void add(Ranges& list, const T* from, std::size_t count) {
+    if (from) list.push_back({number_of(from), count * sizeof *from});
+}
+
+// Each takes the outputs out of a kernel's argument. @return what is left
+kernels::LaunchParams inputs_of(kernels::LaunchParams params, Ranges& writes) {
+    const auto width = static_cast<std::size_t>(params.scene.settings.width);
+    const std::size_t first = static_cast<std::size_t>(params.y0) * width,
+                      count = static_cast<std::size_t>(params.y1 - params.y0) * width;
+    const kernels::FilmView film = std::exchange(params.film, {});
+    const auto add_rows = [&](const auto* sums) { add(writes, sums ? sums + first : nullptr, count); };
+    add_rows(film.beauty);
+    add_rows(film.samples);
+    add_rows(film.weights);
+    add_rows(film.albedo);
+    add_rows(film.normal);
+    add_rows(film.depth);
+    add_rows(film.hits);
+    add_rows(film.motion);
+    add(writes, std::exchange(params.counters, nullptr), 1);
+    return params;
+}
+kernels::ProbeParams inputs_of(kernels::ProbeParams params, Ranges& writes) {
+    add(writes, std::exchange(params.hits, nullptr), params.count);
+    add(writes, std::exchange(params.occluded, nullptr), params.count);
+    return params;
+}
+kernels::BendParams inputs_of(kernels::BendParams params, Ranges& writes) {
+    const std::size_t count = std::size_t{params.rest.vertex_count} * params.poses.key_count;
+    add(writes, std::exchange(params.vertices, nullptr), count);
+    add(writes, std::exchange(params.tangents, nullptr), count);
+    return params;
+}
+kernels::BoxParams inputs_of(kernels::BoxParams params, Ranges& writes) {
+    add(writes, std::exchange(params.boxes, nullptr), params.geometry.triangle_count);
+    return params;
+}
 
 }  // namespace
 
@@ -170,23 +225,19 @@ void RecordingRuntime::reach(const std::byte* words, std::size_t bytes, std::set
     }
 }
 
-void RecordingRuntime::note_what_a_launch_uses(Work& work, const std::vector<std::byte>& argument) {
-    kernels::LaunchParams params;
-    std::memcpy(static_cast<void*>(&params), argument.data(), sizeof params);
-    const auto width = static_cast<std::size_t>(params.scene.settings.width);
-    const std::size_t first = static_cast<std::size_t>(params.y0) * width,
-                      count = static_cast<std::size_t>(params.y1 - params.y0) * width;
-    const auto add = [](std::vector<Range>& list, const auto* from, std::size_t n) {
-        if (from) list.push_back({number_of(from), n * sizeof *from});
-    };
-    const kernels::FilmView film = std::exchange(params.film, {});
-    add(work.writes, film.beauty ? film.beauty + first : nullptr, count);
-    add(work.writes, film.samples ? film.samples + first : nullptr, count);
-    add(work.writes, film.weights ? film.weights + first : nullptr, count);
-    add(work.writes, film.surface ? film.surface + first : nullptr, count);
-    add(work.writes, std::exchange(params.counters, nullptr), 1);
+void RecordingRuntime::note_what_a_launch_uses(Work& work, const std::string& kernel, const std::vector<std::byte>& argument) {
+    using namespace kernels;
     std::set<std::uintptr_t> seen;
-    reach(reinterpret_cast<const std::byte*>(&params), sizeof params, seen, work.reads);
+    // What is left of an argument after its outputs were taken out is read.
+    const auto note_reads = [&](const auto& inputs) { reach(reinterpret_cast<const std::byte*>(&inputs), sizeof inputs, seen, work.reads); };
+    if (kernel == entry_point(Kernel::bend).name)
+        note_reads(inputs_of(argument_of<BendParams>(argument), work.writes));
+    else if (kernel == entry_point(Kernel::boxes).name)
+        note_reads(inputs_of(argument_of<BoxParams>(argument), work.writes));
+    else if (kernel == entry_point(Kernel::probe).name)
+        note_reads(inputs_of(argument_of<ProbeParams>(argument), work.writes));
+    else
+        note_reads(inputs_of(argument_of<LaunchParams>(argument), work.writes));
     work.may_use.clear();
     find_races(work);
 }
@@ -450,11 +501,11 @@ GpuResult RecordingRuntime::launch(GpuFunctionHandle handle, const LaunchSize& s
     if (arguments.size() != 1) fault("launch: kernels take one argument");
     if (function == functions_.end() || arguments.size() != 1) return {};
     const std::byte* argument = static_cast<const std::byte*>(arguments[0]);
-    const std::vector<std::byte> copy(argument, argument + sizeof(kernels::LaunchParams));
+    const std::vector<std::byte> copy(argument, argument + argument_bytes_of(function->second->name));
     Stream* on = stream_of(stream, "launch");
     if (!on) return {};
     const auto work = add_work(*on, "launch", [this, copy, name = function->second->name](Work& launch) {
-        note_what_a_launch_uses(launch, copy);
+        note_what_a_launch_uses(launch, name, copy);
         const double seconds = on_launch ? on_launch(name, copy.data()) : 0;
         launch_s.push_back(seconds);
         clock_s_ += seconds;

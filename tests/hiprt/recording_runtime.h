@@ -155,7 +155,7 @@ private:
     void host_waited(const Order& order);
     void find_races(const Work& work);
     bool is_ordered(const Work& before, const Work& after) const;
-    void note_what_a_launch_uses(Work& work, const std::vector<std::byte>& argument);
+    void note_what_a_launch_uses(Work& work, const std::string& kernel, const std::vector<std::byte>& argument);
     void reach(const std::byte* words, std::size_t bytes, std::set<std::uintptr_t>& seen, std::vector<Range>& reads) const;
 
     Blocks device_, pinned_;

@@ -19,6 +19,7 @@
 #include "device/embree/kernel_sets.h"
 #include "device/embree/tile_job.h"
 #include "device/sample_weight.h"
+#include "device/tables/deformed_geometry.h"
 #include "device/tables/scene_probe.h"
 #include "kernels/camera/filter_table.h"
 #include "kernels/sampler/sobol.h"
@@ -105,6 +106,7 @@ public:
         statistics_.instances = scene_->instance_count();
         statistics_.moving_instances = scene_->moving_count();
         statistics_.structures = scene_->structures();
+        statistics_.bending = count_bending(snapshot);
     }
 
     void render(const Pass& pass, Film& film) override {

@@ -20,6 +20,7 @@ const BendingMeshes::Entry& BendingMeshes::find(const SceneSnapshot& snapshot, i
 
 void BendingMeshes::set_frame(const SceneSnapshot& snapshot, const std::vector<bool>& filtered) {
     built_ = updated_ = kept_ = 0;
+    counts_ = count_bending(snapshot);
     blurs_ = false;
     std::vector<bool> shown(snapshot.deformed.size(), false);
     for (const SnapshotInstance& instance : snapshot.instances)
@@ -29,6 +30,7 @@ void BendingMeshes::set_frame(const SceneSnapshot& snapshot, const std::vector<b
         const GeometryData& source = scene_.geometries[mesh->geometry];
         if (source.indices.empty()) continue;
         blurs_ = blurs_ || (shown[i] && mesh->key_count > 1);
+        counts_.by_kernels += shown[i] && mesh->poses ? 1 : 0;
         check_mesh_size(source);
         update(entries_[mesh->number], mesh, filtered[i]);
     }
@@ -51,7 +53,7 @@ void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMes
     const bool still = mesh->key_count == 1;
     const bool refit =
         same_kind && still && entry.bounds.cost(mesh->vertices, indices) <= kMostGrowth * entry.cost_when_built;
-    copy_vertices(entry, *mesh);
+    place_vertices(entry, *mesh);
     const StructureJob job{entry.data.build_input(host_of(*mesh), filtered), &entry.structure};
     const hiprt::BuildOptions options = build_options(StructureQuality::fast, filtered || !still);
     if (refit)
@@ -68,14 +70,14 @@ void BendingMeshes::update(Entry& entry, const std::shared_ptr<const DeformedMes
 }
 
 /// The triangles and what else keeps its shape stay where they are.
-void BendingMeshes::copy_vertices(Entry& entry, const DeformedMesh& mesh) {
-    if (entry.data.vertices.count() != mesh.vertices.size()) {  // none yet, or another number of keys
-        entry.data = GpuMesh(builder_.memory(), uploads_, host_of(mesh));
-        return;
-    }
-    uploads_.add(entry.data.vertices, mesh.vertices);
-    uploads_.add(entry.data.tangents, mesh.tangents);
-    if (entry.data.boxes.count() > 0) uploads_.add(entry.data.boxes, boxes_of(host_of(mesh)));
+void BendingMeshes::place_vertices(Entry& entry, const DeformedMesh& mesh) {
+    const kernels::Geometry host = host_of(mesh);
+    if (entry.data.vertices.count() != mesh.vertices.size())  // none yet, or another number of keys
+        entry.data = GpuMesh(builder_.memory(), uploads_, host, false);
+    if (mesh.poses)
+        bender_.bend(mesh, host, entry.data);
+    else
+        entry.data.upload_bent(uploads_, host);
 }
 
 void BendingMeshes::set_previous(const SceneSnapshot& snapshot) {

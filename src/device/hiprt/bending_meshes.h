@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "device/device.h"
+#include "device/hiprt/gpu_bender.h"
 #include "device/hiprt/gpu_mesh.h"
 #include "device/hiprt/structure_builder.h"
 #include "device/tables/bounds_tree.h"
@@ -14,13 +16,17 @@
 
 namespace kadr {
 
-/// Meshes that bend from frame to frame: their vertices are copied anew, and their structures, built fast, get new
-/// bounds, or are built anew once the old tree has become too bad. Those that bend while the shutter is open are boxes
+/// Meshes that bend from frame to frame: their vertices are made anew (by our kernels, from poses; copied where a mesh
+/// has none), and their structures, built fast, get new bounds, or are built anew once the old tree has become too bad. Those that bend while the shutter is open are boxes
 /// to HIPRT, built anew for every frame.
 class BendingMeshes {
 public:
-    BendingMeshes(const Scene& scene, StructureBuilder& builder, UploadQueue& uploads)
-        : scene_(scene), builder_(builder), uploads_(uploads) {}
+    /// @param kernel  of the kernels that make vertices and boxes
+    BendingMeshes(const Scene& scene, StructureBuilder& builder, UploadQueue& uploads, GpuBender::KernelOf kernel)
+        : scene_(scene),
+          builder_(builder),
+          uploads_(uploads),
+          bender_(scene, builder.memory(), uploads, builder.stream(), std::move(kernel)) {}
 
     /// Brings what is shown up to date. @param filtered  [deformed mesh of the snapshot] rays ask our filter function
     /// @throws InputError  for a mesh that is too large, with its name
@@ -39,6 +45,7 @@ public:
     std::uint64_t updated() const { return updated_; }
     std::uint64_t kept() const { return kept_; }
     bool empty() const { return entries_.empty(); }
+    const BendingCounts& counts() const { return counts_; }
     bool blurs() const { return blurs_; }  ///< whether some mesh bends while the shutter is open
 
 private:
@@ -53,13 +60,15 @@ private:
     const Entry& find(const SceneSnapshot& snapshot, int deformed) const;
     kernels::Geometry host_of(const DeformedMesh& mesh) const;
     void update(Entry& entry, const std::shared_ptr<const DeformedMesh>& mesh, bool filtered);
-    void copy_vertices(Entry& entry, const DeformedMesh& mesh);
+    void place_vertices(Entry& entry, const DeformedMesh& mesh);
 
     const Scene& scene_;
     StructureBuilder& builder_;
     UploadQueue& uploads_;
+    GpuBender bender_;
     std::map<std::uint32_t, Entry> entries_;  ///< by number of the mesh
     std::uint64_t built_ = 0, updated_ = 0, kept_ = 0;
+    BendingCounts counts_;
     bool blurs_ = false;
 };
 

@@ -6,11 +6,13 @@
 
 #include "base/cache_folder.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "device/hiprt/gpu_probe.h"
 #include "device/hiprt/hiprt_device.h"
 #include "device/hiprt/hiprt_library.h"
 #include "device/hiprt/kernel_cache.h"
 #include "device/hiprt/orochi_runtime.h"
+#include "device/hiprt/trace_kernels.h"
 
 namespace kadr {
 namespace {
@@ -23,8 +25,21 @@ std::filesystem::path kernel_cache() {
     return folder ? prepare_kernel_cache(*folder / "kernels") : std::filesystem::path();
 }
 
+/// Named after what the outcome of a self-check depends on: the GPU, its driver, HIPRT, and our kernels.
+std::filesystem::path check_file(const GpuProbe& probe, const GpuProperties& gpu, const std::filesystem::path& folder) {
+    if (folder.empty()) return {};
+    const HostSystem& machine = this_machine();
+    Hasher hasher;
+    for (const std::string& text : {gpu.name, gpu.architecture, machine.text_of("/proc/driver/nvidia/version"),
+                                    machine.text_of("/sys/module/amdgpu/srcversion"), machine.text_of("/proc/version"), probe.needs.front().found})
+        hasher.add(text);
+    hasher.add(hash_file(probe.hiprt_library).hex());
+    hasher.add(hash_of_kernels(probe.kernel_folder));
+    return folder.parent_path() / "gpu-checks" / hasher.finish().hex();
+}
+
 /// @throws InputError, RenderError  with what went wrong on the way
-std::unique_ptr<Device> start(const GpuProbe& probe, int number, KernelChoice kernels) {
+StartedGpu start(const GpuProbe& probe, int number, KernelChoice kernels) {
     // HIPRT reads it when it compiles.
     setenv("HIPRT_PATH", probe.hiprt_headers.c_str(), 1);
     HiprtParts parts;
@@ -33,7 +48,11 @@ std::unique_ptr<Device> start(const GpuProbe& probe, int number, KernelChoice ke
     parts.kernel_folder = probe.kernel_folder;
     parts.cache_folder = kernel_cache();
     parts.kernels = kernels;
-    return make_hiprt_device(std::move(parts));
+    StartedGpu gpu;
+    gpu.name = parts.runtime->properties().name;
+    gpu.check_file = check_file(probe, parts.runtime->properties(), parts.cache_folder);
+    gpu.device = make_hiprt_device(std::move(parts));
+    return gpu;
 }
 
 }  // namespace
@@ -52,7 +71,7 @@ GpuList list_gpus() {
     return list;
 }
 
-Found<std::unique_ptr<Device>> try_gpu(int number, KernelChoice kernels) {
+Found<StartedGpu> try_gpu(int number, KernelChoice kernels) {
     const GpuProbe probe = probe_gpu(this_machine(), built_with_orochi());
     if (!probe.complete()) return probe.missing();
     try {

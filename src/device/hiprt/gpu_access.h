@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +18,13 @@ struct GpuList {
 };
 GpuList list_gpus();
 
+/// A GPU that started.
+struct StartedGpu {
+    std::unique_ptr<Device> device;
+    std::string name;                  ///< "NVIDIA H200"
+    std::filesystem::path check_file;  ///< keeps the outcome of its self-check (self_check.h); empty: nothing does
+};
 /// A GPU, or in one sentence why it cannot be had. @param number  from 0
-Found<std::unique_ptr<Device>> try_gpu(int number, KernelChoice kernels);
+Found<StartedGpu> try_gpu(int number, KernelChoice kernels);
 
 }  // namespace kadr

@@ -1,7 +1,6 @@
 #include "device/hiprt/gpu_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "kernels/gpu/launch_params.h"
 
@@ -17,44 +16,28 @@ DeviceBuffer<T> copy(GpuMemory& memory, UploadQueue& uploads, const T* from, std
 
 std::size_t keys_of(const kernels::Geometry& host) { return std::max(host.key_count, 1u); }
 
-void grow(TriangleBox& box, const kernels::Vec3f& p) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-}
-
-/// By a few units in the last place of the largest coordinate: what rounding moves a ray in the mesh's space.
-void pad(TriangleBox& box) {
-    float largest = 0;
-    for (const float x : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
-        largest = std::max(largest, std::abs(x));
-    const float by = 1e-6f * largest;
-    box.low = {box.low.x - by, box.low.y - by, box.low.z - by};
-    box.high = {box.high.x + by, box.high.y + by, box.high.z + by};
-}
-
 }  // namespace
 
-std::vector<TriangleBox> boxes_of(const kernels::Geometry& host) {
-    std::vector<TriangleBox> boxes(host.triangle_count);
-    for (unsigned t = 0; t < host.triangle_count; ++t) {
-        const unsigned* corners = host.indices + std::size_t{3} * t;
-        boxes[t] = {host.vertices[corners[0]].position, host.vertices[corners[0]].position};
-        for (std::size_t k = 0; k < keys_of(host); ++k)
-            for (int c = 0; c < 3; ++c) grow(boxes[t], host.vertices[k * host.vertex_count + corners[c]].position);
-        pad(boxes[t]);
-    }
+std::vector<kernels::TriangleBox> boxes_of(const kernels::Geometry& host) {
+    std::vector<kernels::TriangleBox> boxes(host.triangle_count);
+    for (unsigned t = 0; t < host.triangle_count; ++t) boxes[t] = kernels::box_of(host, t);
     return boxes;
 }
 
-GpuMesh::GpuMesh(GpuMemory& memory, UploadQueue& uploads, const kernels::Geometry& host)
-    : vertices(copy(memory, uploads, host.vertices, keys_of(host) * host.vertex_count)),
+GpuMesh::GpuMesh(GpuMemory& memory, UploadQueue& uploads, const kernels::Geometry& host, bool bent)
+    : vertices(memory, keys_of(host) * host.vertex_count, MemoryUse::vertices),
       indices(copy(memory, uploads, host.indices, std::size_t{3} * host.triangle_count)),
-      tangents(copy(memory, uploads, host.tangents, keys_of(host) * host.vertex_count)),
+      tangents(memory, host.tangents ? keys_of(host) * host.vertex_count : 0, MemoryUse::vertices),
       colors(copy(memory, uploads, host.colors, host.vertex_count)),
-      uv1(copy(memory, uploads, host.uv1, host.vertex_count)) {
-    if (keys_of(host) == 1) return;
-    boxes = DeviceBuffer<TriangleBox>(memory, host.triangle_count, MemoryUse::vertices);
-    uploads.add(boxes, boxes_of(host));
+      uv1(copy(memory, uploads, host.uv1, host.vertex_count)),
+      boxes(memory, keys_of(host) > 1 ? host.triangle_count : 0, MemoryUse::vertices) {
+    if (bent) upload_bent(uploads, host);
+}
+
+void GpuMesh::upload_bent(UploadQueue& uploads, const kernels::Geometry& host) const {
+    uploads.add(vertices, {host.vertices, vertices.count()});
+    if (host.tangents) uploads.add(tangents, {host.tangents, tangents.count()});
+    if (boxes.count() > 0) uploads.add(boxes, boxes_of(host));
 }
 
 kernels::Geometry GpuMesh::view(const kernels::Geometry& host) const {
@@ -73,7 +56,7 @@ hiprt::GeometryBuildInput GpuMesh::build_input(const kernels::Geometry& host, bo
     if (boxes.count() > 0) {
         input.type = hiprt::PrimitiveType::aabb_list;
         input.geometry_type = kernels::geometry_type::kMoving;
-        input.list = {boxes.pointer(), host.triangle_count, sizeof(TriangleBox)};
+        input.list = {boxes.pointer(), host.triangle_count, sizeof(kernels::TriangleBox)};
         return input;
     }
     if (filtered) input.geometry_type = kernels::geometry_type::kFiltered;

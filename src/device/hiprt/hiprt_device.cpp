@@ -11,6 +11,7 @@
 #include "device/hiprt/gpu_film.h"
 #include "device/hiprt/hiprt_scene.h"
 #include "device/hiprt/launch_queue.h"
+#include "device/hiprt/ray_probe.h"
 #include "device/hiprt/trace_kernels.h"
 #include "device/sample_weight.h"
 #include "kernels/camera/filter_table.h"
@@ -56,7 +57,8 @@ public:
           choice_(parts.kernels),
           builder_(context_, memory_, scene_stream_),
           film_(memory_, uploads_, downloads_, stream_),
-          launches_(*runtime_, stream_) {}
+          launches_(*runtime_, stream_),
+          probe_(memory_, uploads_, stream_, [this] { return probe_frame(); }) {}
 
     ~HiprtDevice() override { report(runtime_->make_current(), "use the GPU"); }
 
@@ -75,7 +77,7 @@ public:
         stages_ = true;
         memory_.forget_steps();
         with_memory("the scene",
-                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, scene_uploads_); });
+                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, scene_uploads_, kernels_); });
         if (build.quality == BuildQuality::low)
             while (scene_->quality() != StructureQuality::fast) scene_->lower_quality();
         scene_stream_.synchronize("copy the scene to the GPU");
@@ -96,7 +98,7 @@ public:
         const kernels::IntegratorKind integrator = frame.view().settings.integrator;
         const unsigned set = kernels::kernel_requirements(
             integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : frame.requirements());
-        function_ = kernels_.get({integrator, set, frame.asks_functions()});
+        function_ = kernels_.get({kernels::kernel_of(integrator), set, frame.asks_functions()});
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
         take_filter(snapshot.settings);
@@ -110,6 +112,7 @@ public:
         statistics_.structures = frame.structures();
         statistics_.staged = staged ? 1 : 0;
         statistics_.memory_steps = memory_.steps();
+        statistics_.bending = frame.bending();
         statistics_.set_frame_s = seconds_since(begin);
     }
 
@@ -151,8 +154,27 @@ public:
     }
 
     DeviceStatistics statistics() const override { return statistics_; }
+    Probe* probe() override { return &probe_; }
 
 private:
+    /// What rays of any kind need: the frame at hand, without a film.
+    kernels::LaunchParams frame_params() const {
+        const HiprtFrame& frame = scene_->frame();
+        kernels::LaunchParams params{};
+        params.scene = frame.view();
+        params.top = frame.top();
+        params.functions = frame.asks_functions() ? functions_.handle() : nullptr;
+        params.instance_of = frame.instance_of();
+        params.ray_mask = hiprt::kFullRayMask;
+        return params;
+    }
+
+    RayProbe::Frame probe_frame() {
+        current(*runtime_);
+        const unsigned set = kernels::kernel_requirements(kernels::Kernel::probe, scene_->frame().requirements());
+        return {frame_params(), kernels_.get({kernels::Kernel::probe, set, scene_->frame().asks_functions()})};
+    }
+
     /// From here on to the end of the scene, one frame is on the GPU at a time. @return whether there were two
     bool stop_staging() {
         if (!scene_->drop_staged()) return false;
@@ -193,17 +215,12 @@ private:
         if (pass.active) active_.set_changed(memory_, uploads_, {pass.active, pixels});
         constexpr kernels::LaunchCounters kNone{};
         counters_.set(memory_, uploads_, {&kNone, 1});
-        kernels::LaunchParams params{};
-        params.scene = frame.view();
-        params.top = frame.top();
-        params.functions = frame.asks_functions() ? functions_.handle() : nullptr;
-        params.instance_of = frame.instance_of();
+        kernels::LaunchParams params = frame_params();
         params.filter = filter_table_.data();
         params.shutter = shutter_table_.data();
         params.active = pass.active ? active_.data() : nullptr;
         params.counters = static_cast<kernels::LaunchCounters*>(counters_.pointer());
         params.seed = kernels::seed_of_half(settings.seed, pass.half);
-        params.ray_mask = hiprt::kFullRayMask;
         params.centred = pass.total_samples == 1 && settings.integrator == kernels::IntegratorKind::direct;
         return params;
     }
@@ -263,6 +280,7 @@ private:
     DeviceTable<kernels::LaunchCounters> counters_;
     GpuFilm film_;
     LaunchQueue launches_;
+    RayProbe probe_;
     std::unique_ptr<HiprtScene> scene_;
 
     bool stages_ = true;                  ///< the frame to come is made while one renders: there is memory for both

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "device/hiprt/sheared_motion.h"
 #include "device/tables/kernel_needs.h"
 
 namespace kadr {
@@ -14,10 +15,13 @@ HiprtFrame::HiprtFrame(SharedTables& shared)
       uploads_(shared.uploads),
       memory_(shared.builder.memory()),
       rigid_(shared.rigid),
-      bending_(shared.scene, shared.builder, shared.uploads),
+      bending_(shared.scene, shared.builder, shared.uploads,
+               [&shared](kernels::Kernel kernel) { return shared.kernels.get({kernel, 0, false}); }),
       materials_(shared.scene) {}
 
-void HiprtFrame::set(const SceneSnapshot& snapshot) {
+void HiprtFrame::set(const SceneSnapshot& given) {
+    const std::optional<SceneSnapshot> bent = bend_sheared_motion(given, scene_);
+    const SceneSnapshot& snapshot = bent ? *bent : given;
     const bool same_geometry = have_frame_ && snapshot.geometry_key == geometry_key_ &&
                                snapshot.space() == space_ && snapshot.settings.cull_backfaces == cull_backfaces_;
     // Until all is done there is no frame: whatever fails, the next call starts anew.
@@ -78,7 +82,7 @@ void HiprtFrame::build_geometry(const SceneSnapshot& snapshot) {
     if (!snapshot.deformed.empty() || !bending_.empty()) top_ = {};
     bending_.forget(snapshot);
     require_meshes(snapshot);
-    tables_ = make_instance_tables(snapshot, scene_, [&](std::size_t i) { return mesh_of(snapshot, i); });
+    tables_ = make_instance_tables(snapshot, [&](std::size_t i) { return mesh_of(snapshot, i); });
     host_geometries_ = list_geometries(snapshot, true);
     materials_.note_shown(snapshot, tables_.instances, host_geometries_);
     instances_.set(memory_, uploads_, tables_.instances);

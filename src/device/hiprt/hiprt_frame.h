@@ -37,6 +37,7 @@ public:
     std::uint64_t instance_count() const { return tables_.shown.size(); }
     std::uint64_t moving_count() const { return tables_.moving; }
     const StructureCounts& structures() const { return structures_; }
+    const BendingCounts& bending() const { return bending_.counts(); }
 
 private:
     void build_geometry(const SceneSnapshot& snapshot);

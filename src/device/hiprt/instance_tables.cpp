@@ -4,31 +4,9 @@
 
 #include "base/error.h"
 #include "device/tables/motion_keys.h"
-#include "frame/decompose.h"
 
 namespace kadr {
 namespace {
-
-bool is_sheared(const kernels::FrameMatrix& frame) {
-    glm::dmat4 m(1);
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) m[column][row] = frame.matrix[row][column];
-    return is_sheared(decompose(m));
-}
-
-/// HIPRT's inverse of sheared frames mixes coordinates of the world and of the object; a single frame is traced
-/// rightly.
-void refuse_sheared_motion(const SceneSnapshot& snapshot, const Scene& scene, std::size_t instance) {
-    const kernels::TransformHeader& header = snapshot.motion.headers[instance];
-    if (header.frame_count == 1 || snapshot.motion.types[instance] != FrameType::matrix) return;
-    for (unsigned k = 0; k < header.frame_count; ++k)
-        if (is_sheared(snapshot.motion.matrices[header.first_frame + k]))
-            throw InputError(
-                fmt::format("--device hiprt: an instance of the mesh {} is sheared and moves while the shutter is open "
-                            "(frame {})",
-                            scene.geometries[snapshot.instances[instance].geometry].name, snapshot.frame_number),
-                "HIPRT 3.1 traces that wrongly; use --device cpu, or scale its parents evenly");
-}
 
 /// Where the kernels find an instance: HIPRT interpolates decomposed frames whatever their number, and shading has to
 /// use the transform that was traced, so matrices are for what is still.
@@ -76,7 +54,7 @@ void check_count(std::size_t shown) {
 
 }  // namespace
 
-InstanceTables make_instance_tables(const SceneSnapshot& snapshot, const Scene& scene,
+InstanceTables make_instance_tables(const SceneSnapshot& snapshot,
                                     const std::function<ShownMesh(std::size_t instance)>& mesh_of) {
     InstanceTables tables;
     for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
@@ -85,7 +63,6 @@ InstanceTables make_instance_tables(const SceneSnapshot& snapshot, const Scene& 
         tables.instances.push_back({mesh.geometry, source.material, source.id});
         add_motion(snapshot, i, tables);
         if (!mesh.structure) continue;
-        refuse_sheared_motion(snapshot, scene, i);
         tables.shown.push_back({hiprt::InstanceType::geometry, mesh.structure});
         tables.masks.push_back(source.mask);
         tables.instance_of.push_back(static_cast<unsigned>(i));

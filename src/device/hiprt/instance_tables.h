@@ -39,9 +39,9 @@ struct ShownMesh {
 };
 
 /// @param mesh_of  of an instance of the snapshot
-/// @throws InputError  for more instances than HIPRT counts, and for one that is sheared while it moves, which HIPRT
-///                     traces wrongly
-InstanceTables make_instance_tables(const SceneSnapshot& snapshot, const Scene& scene,
+/// @pre nothing moves while it is sheared (sheared_motion.h)
+/// @throws InputError  for more instances than HIPRT counts
+InstanceTables make_instance_tables(const SceneSnapshot& snapshot,
                                     const std::function<ShownMesh(std::size_t instance)>& mesh_of);
 
 }  // namespace kadr

@@ -3,8 +3,9 @@
 namespace kadr {
 
 /// Textures as they are, so that the kernels filter them as on the CPU.
-SharedTables::SharedTables(const Scene& all, const Image* image, StructureBuilder& builder_of_all, UploadQueue& queue)
-    : scene(all), builder(builder_of_all), uploads(queue), rigid(all, builder_of_all, queue) {
+SharedTables::SharedTables(const Scene& all, const Image* image, StructureBuilder& builder_of_all, UploadQueue& queue,
+                           TraceKernels& compiler)
+    : scene(all), builder(builder_of_all), uploads(queue), kernels(compiler), rigid(all, builder_of_all, queue) {
     if (image) environment = EnvironmentTables(*image);
     GpuMemory& memory = builder.memory();
     std::vector<kernels::Texture> on_gpu;

@@ -5,6 +5,7 @@
 
 #include "device/hiprt/device_table.h"
 #include "device/hiprt/rigid_meshes.h"
+#include "device/hiprt/trace_kernels.h"
 #include "device/tables/environment_tables.h"
 #include "film/film.h"
 
@@ -14,11 +15,13 @@ namespace kadr {
 /// environment. What is there never changes, so that a frame may be made while another renders.
 struct SharedTables {
     /// @param image  the linear R, G, B of the environment's image; null: none  @throws GpuOutOfMemory
-    SharedTables(const Scene& scene, const Image* image, StructureBuilder& builder, UploadQueue& uploads);
+    SharedTables(const Scene& scene, const Image* image, StructureBuilder& builder, UploadQueue& uploads,
+                 TraceKernels& kernels);
 
     const Scene& scene;
     StructureBuilder& builder;
     UploadQueue& uploads;
+    TraceKernels& kernels;
     RigidMeshes rigid;
     EnvironmentTables environment;
     std::vector<kernels::Texture> host_textures;  ///< with addresses of the host

@@ -8,7 +8,6 @@
 #include "base/hash.h"
 #include "device/hiprt/hiprt_error.h"
 #include "device/requirement_names.h"
-#include "kernels/gpu/entry_points.h"
 
 namespace kadr {
 namespace {
@@ -37,13 +36,15 @@ std::vector<const char*> pointers_to(const std::vector<std::string>& texts) {
 
 }  // namespace
 
+std::string hash_of_kernels(const std::filesystem::path& folder) { return hash_folder(folder / "kernels"); }
+
 KernelSource TraceKernels::source_of(const KernelNeed& need) {
-    if (hash_.empty()) hash_ = hash_folder(folder_ / "kernels");
-    const kernels::EntryPoint entry = kernels::entry_point(need.integrator);
+    if (hash_.empty()) hash_ = hash_of_kernels(folder_);
+    const kernels::EntryPoint& entry = kernels::entry_point(need.kernel);
     KernelSource source;
     source.function = entry.name;
     source.text = fmt::format("#define KADR_REQUIREMENTS {}u\n#include \"{}\"\n",
-                              kernels::kernel_requirements(need.integrator, need.requirements), entry.header);
+                              kernels::kernel_requirements(need.kernel, need.requirements), entry.header);
     source.options = {"-I" + folder_.string()};  // HIPRT itself asks for C++17
     if (context_.runtime().properties().vendor == GpuVendor::amd)
         source.options.insert(source.options.end(), std::begin(kernels::kHipOptions), std::end(kernels::kHipOptions));

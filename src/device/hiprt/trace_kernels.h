@@ -6,13 +6,13 @@
 #include <string>
 
 #include "device/hiprt/hiprt_handles.h"
-#include "kernels/scene/scene_types.h"
+#include "kernels/gpu/entry_points.h"
 
 namespace kadr {
 
 /// Which kernel a frame needs.
 struct KernelNeed {
-    kernels::IntegratorKind integrator = kernels::IntegratorKind::path;
+    kernels::Kernel kernel = kernels::Kernel::path;
     unsigned requirements = 0;  ///< set of kernels::requirement bits: exactly these are compiled
     bool functions = false;     ///< rays ask our functions about some geometry
     auto operator<=>(const KernelNeed&) const = default;
@@ -23,6 +23,9 @@ struct KernelSource {
     std::string text, module, function;
     std::vector<std::string> options;
 };
+
+/// Of all files of kernels/: their paths and what they hold. @param folder  holds kernels/
+std::string hash_of_kernels(const std::filesystem::path& folder);
 
 /// Kernels, compiled by HIPRT when first needed, from our sources on the user's machine. HIPRT keeps what it compiled
 /// in its cache folder and, by the module's name alone, in memory: so the name holds a hash of all our sources and

@@ -1,11 +1,19 @@
 #pragma once
 
 #include "device/probe.h"
-#include "kernels/camera/camera.h"
-#include "kernels/integrator/interaction.h"
-#include "kernels/integrator/path.h"
+#include "kernels/gpu/probe.h"
 
 namespace kadr {
+
+template <class T>
+SurfaceHit surface_hit_of(const kernels::ProbeHitOf<T>& hit) {
+    return {hit.instance, hit.primitive, hit.u, hit.v, hit.distance, kernels::splat<double>(hit.position), kernels::splat<double>(hit.normal)};
+}
+
+template <class T>
+kernels::ProbeShadowOf<T> probe_shadow_of(const SurfaceRay& ray) {
+    return {ray.from.instance, ray.from.primitive, static_cast<T>(ray.from.u), static_cast<T>(ray.from.v), kernels::splat<T>(ray.to_viewer), kernels::splat<T>(ray.direction), ray.distance_m};
+}
 
 /// What a probe asks of a scene on the host, in the numbers of its kernels. @tparam T  float or double
 template <class T>
@@ -16,49 +24,16 @@ public:
     /// @param tracer  in the sense of kernels/gpu/render_pixel.h
     template <class Tracer>
     SurfaceHit look(Tracer&& tracer, kernels::Vec2f film_px, double time) const {
-        kernels::PathState<T> path{};
-        path.time = static_cast<T>(time);
-        const kernels::Settings& s = scene_.settings;
-        kernels::CameraOf<T> pinhole = scene_.camera;
-        kernels::CameraKeyOf<T> key = camera_key(path.time);
-        pinhole.keys = &key;
-        pinhole.key_count = 1;
-        kernels::camera_ray<T>(pinhole, s.width, s.height, {T(film_px.x), T(film_px.y)}, path.time, {T(0.5), T(0.5)}, path.origin, path.direction);
-        // Renderers drop such samples: here nothing is met.
-        if (!kernels::is_finite(path.origin) || !kernels::is_finite(path.direction)) return {};
-        kernels::Hit<T> hit{0, 0, 0, 0, T(kernels::kInfinity)};
-        tracer.closest(path, hit);
-        if (!(hit.distance < T(kernels::kInfinity))) return {};
-        const kernels::Interaction<T> at = interaction(hit, path.time, -path.direction);
-        return {hit.instance, hit.primitive, hit.u, hit.v, hit.distance, kernels::splat<double>(at.position), kernels::splat<double>(at.geometric_normal)};
+        return surface_hit_of(kernels::look<T, kSet>(scene_, tracer, film_px, static_cast<T>(time)));
     }
 
     template <class Tracer>
     bool occluded(Tracer&& tracer, const SurfaceRay& ray, double time) const {
-        const kernels::Hit<T> hit{ray.from.instance, ray.from.primitive, static_cast<T>(ray.from.u), static_cast<T>(ray.from.v), static_cast<T>(ray.from.distance_m)};
-        kernels::ShadowRay<T> shadow{};
-        shadow.origin = interaction(hit, static_cast<T>(time), kernels::splat<T>(ray.to_viewer)).origin;
-        shadow.direction = kernels::splat<T>(ray.direction);
-        shadow.distance = ray.distance_m;
-        if (!kernels::is_finite(shadow.origin) || !kernels::is_finite(shadow.direction)) return true;
-        float transmittance = 1;
-        tracer.shadow(shadow, static_cast<T>(time), transmittance);
-        return !(transmittance > 0);
+        return kernels::is_occluded<T, kSet>(scene_, tracer, probe_shadow_of<T>(ray), static_cast<T>(time));
     }
 
 private:
     static constexpr unsigned kSet = kernels::requirement::kAll;
-
-    kernels::Interaction<T> interaction(const kernels::Hit<T>& hit, T time, kernels::Vec3<T> to_viewer) const {
-        return kernels::make_interaction<T, kSet>(scene_, hit, time, to_viewer, true);
-    }
-
-    /// The camera at a time, without its lens.
-    kernels::CameraKeyOf<T> camera_key(T time) const {
-        const kernels::CameraPose<T> pose = kernels::camera_at<T>(scene_.camera, time);
-        return {pose.position, {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, pose.tan_half_width, pose.tan_half_height, 0, 1};
-    }
-
     const kernels::SceneViewOf<T>& scene_;
 };
 
