@@ -16,7 +16,7 @@ inline constexpr float kFar = 1e30f;
 template <class F>
 struct LightSample {
     Vec3<F> direction;  ///< unit, towards the light
-    F distance;         ///< metres; kFar for directional lights
+    F distance;         ///< metres, to the light or as far as nothing may lie in between; kFar for directional lights
     Vec3<F> radiance;   ///< incident radiance; for delta lights the irradiance of a surface facing the light
     F pdf;              ///< per steradian; 1 for delta lights; 0: no light from here
 };
@@ -43,6 +43,13 @@ template <class T>
 SHARED_FN bool is_delta(const LightOf<T>& light) {
     if (light.kind == LightKind::directional) return light.cos_angular_radius >= 1.0f;
     return light.kind != LightKind::area && light.radius <= 0.0f;
+}
+
+/// How far a shadow ray to a light goes: to the light itself, but for rounding, so that whatever lies just before it hides
+/// it, and what it lies in front of does not.
+template <class F>
+SHARED_FN F shadow_distance(F light_distance) {
+    return light_distance * (F(1.0f) - end_rounding<F>());
 }
 
 template <class F>

@@ -70,6 +70,7 @@ public:
         const std::vector<Bundle> truth = look_in_bundles(reference_, points_);
         for (std::size_t i = 0; i < points_.size(); ++i) compare_hit(seen[i], truth[i]);
         send_shadow_rays(seen, truth);
+        for (int light = 0; light < reference_.light_count(); ++light) send_light_rays(light, seen, truth);
         return figures_;
     }
 
@@ -139,6 +140,36 @@ private:
         }
     }
 
+    /// Random numbers of a point on a light, those of a bundle a little apart: what hides the light may end there.
+    static kernels::Vec3f point_on_light(std::size_t point, int number, int member) {
+        constexpr float kApart = 1e-3f;
+        const auto sampler = kernels::make_sampler<double>(static_cast<int>(point), 1, static_cast<unsigned>(number), 1u);
+        const kernels::Vec2<double> u = sampler.get_2d(0u);
+        const auto within = [](double x) { return std::clamp(static_cast<float>(x), 0.0f, kernels::kOneMinusEpsilon); };
+        return {within(u.x + kApart * kOffsets[member][0] / kApart_px), within(u.y + kApart * kOffsets[member][1] / kApart_px), within(sampler.get_1d(1u))};
+    }
+
+    void send_light_rays(int light, const std::vector<SurfaceHit>& seen, const std::vector<Bundle>& truth) {
+        std::vector<LightRay> rays, bundles;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const Bundle& hits = truth[i];
+            if (!seen[i].met() || !agree(hits, [](const SurfaceHit& hit) { return hit.instance; }) || seen[i].instance != hits[0].instance) continue;
+            for (int k = 0; k < counts_.directions; ++k) {
+                rays.push_back({seen[i], to_float(to_viewer(seen[i])), light, point_on_light(i, k, 0)});
+                for (int m = 0; m < kBundle; ++m) bundles.push_back({hits[static_cast<std::size_t>(m)], to_float(to_viewer(hits[static_cast<std::size_t>(m)])), light, point_on_light(i, k, m)});
+            }
+        }
+        const std::vector<LightSight> found = device_.towards_lights(rays, 0), exact = reference_.towards_lights(bundles, 0);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto first = exact.begin() + static_cast<std::ptrdiff_t>(i) * kBundle;
+            const bool clear = std::all_of(first, first + kBundle, [&](LightSight sight) { return sight == *first; });
+            if (!clear || *first == LightSight::not_towards || found[i] == LightSight::not_towards) continue;
+            ++figures_.light_rays;
+            if (found[i] == *first) continue;
+            ++(found[i] == LightSight::hidden ? figures_.false_shadows : figures_.leaks);
+        }
+    }
+
     Probe& device_;
     Probe& reference_;
     const SceneSnapshot& snapshot_;
@@ -153,7 +184,7 @@ private:
 RayFigures operator+(const RayFigures& a, const RayFigures& b) {
     return {a.camera_rays + b.camera_rays, a.holes + b.holes, a.wrong_surfaces + b.wrong_surfaces,
             std::max(a.position_error_px, b.position_error_px), std::max(a.position_error_ulp, b.position_error_ulp),
-            a.shadow_rays + b.shadow_rays, a.false_shadows + b.false_shadows, a.leaks + b.leaks};
+            a.shadow_rays + b.shadow_rays, a.light_rays + b.light_rays, a.false_shadows + b.false_shadows, a.leaks + b.leaks};
 }
 
 RayFigures compare_rays(Device& device, Device& reference, const SceneSnapshot& snapshot, const RayCounts& counts) {

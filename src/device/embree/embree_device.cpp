@@ -157,6 +157,16 @@ private:
         return answers;
     }
 
+    int light_count() const override { return SceneProbe<float>(scene_->view()).light_count(); }
+
+    std::vector<LightSight> towards_lights(std::span<const LightRay> rays, double time) override {
+        std::vector<LightSight> answers(rays.size());
+        for_each_ray(rays.size(), [&](std::size_t i) {
+            answers[i] = SceneProbe<float>(scene_->view()).towards_light(EmbreeTracer(*scene_, true), rays[i], time);
+        });
+        return answers;
+    }
+
     template <class Ask>
     void for_each_ray(std::size_t count, const Ask& ask) {
         arena_.execute([&] {

@@ -35,18 +35,48 @@ public:
 
     template <class Tracer>
     bool occluded(Tracer&& tracer, const SurfaceRay& ray, double time) const {
-        const kernels::Hit<T> hit{ray.from.instance, ray.from.primitive, static_cast<T>(ray.from.u), static_cast<T>(ray.from.v), static_cast<T>(ray.from.distance_m)};
         kernels::ShadowRay<T> shadow{};
-        shadow.origin = interaction(hit, static_cast<T>(time), kernels::splat<T>(ray.to_viewer)).origin;
+        shadow.origin = interaction(hit_of(ray.from), static_cast<T>(time), kernels::splat<T>(ray.to_viewer)).origin;
         shadow.direction = kernels::splat<T>(ray.direction);
         shadow.distance = ray.distance_m;
-        if (!kernels::is_finite(shadow.origin) || !kernels::is_finite(shadow.direction)) return true;
-        float transmittance = 1;
-        tracer.shadow(shadow, static_cast<T>(time), transmittance);
-        return !(transmittance > 0);
+        return stopped(tracer, shadow, static_cast<T>(time));
+    }
+
+    int light_count() const { return scene_.lights.count + (scene_.lights.triangle_count > 0 ? 1 : 0); }
+
+    template <class Tracer>
+    LightSight towards_light(Tracer&& tracer, const LightRay& ray, double time) const {
+        const T at = static_cast<T>(time);
+        const kernels::Interaction<T> from = interaction(hit_of(ray.from), at, kernels::splat<T>(ray.to_viewer));
+        const kernels::LightSample<T> light = sample_light(ray, from.origin, at);
+        if (!(light.pdf > 0) || !(max_component(light.radiance) > 0) || !(dot(light.direction, from.geometric_normal) > 0)) return LightSight::not_towards;
+        kernels::ShadowRay<T> shadow{};
+        shadow.origin = from.origin;
+        shadow.direction = light.direction;
+        shadow.distance = kernels::min(kernels::shadow_distance(light.distance), T(kernels::kInfinity));
+        return stopped(tracer, shadow, at) ? LightSight::hidden : LightSight::seen;
     }
 
 private:
+    template <class Tracer>
+    static bool stopped(Tracer&& tracer, const kernels::ShadowRay<T>& shadow, T time) {
+        if (!kernels::is_finite(shadow.origin) || !kernels::is_finite(shadow.direction)) return true;
+        float transmittance = 1;
+        tracer.shadow(shadow, time, transmittance);
+        return !(transmittance > 0);
+    }
+
+    static kernels::Hit<T> hit_of(const SurfaceHit& from) {
+        return {from.instance, from.primitive, static_cast<T>(from.u), static_cast<T>(from.v), static_cast<T>(from.distance_m)};
+    }
+
+    kernels::LightSample<T> sample_light(const LightRay& ray, kernels::Vec3<T> from, T time) const {
+        const kernels::LightSetOf<T>& lights = scene_.lights;
+        const kernels::Vec2<T> u{ray.u.x, ray.u.y};
+        if (ray.light == lights.count) return kernels::sample_emitters<T>(scene_, from, time, ray.u.z, u, true);
+        return kernels::sample_light<T>(lights.keys + lights.first[ray.light], lights.key_count[ray.light], time, from, u);
+    }
+
     static constexpr unsigned kSet = kernels::requirement::kAll;
 
     kernels::Interaction<T> interaction(const kernels::Hit<T>& hit, T time, kernels::Vec3<T> to_viewer) const {
