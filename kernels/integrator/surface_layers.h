@@ -25,16 +25,17 @@ SHARED_FN Vec2<T> motion_of_point(const SceneViewOf<T>& scene, unsigned instance
     return {now.x - before.x, now.y - before.y};
 }
 
-/// Cosine between a camera ray and the view axis, which makes a distance a depth.
+/// How far from the camera a hit of a camera ray is, along the view axis.
+/// @param distance  along the ray, from where it starts
 template <class T>
-SHARED_FN T view_cosine(const CameraOf<T>& camera, T time, Vec3<T> direction) {
+SHARED_FN T view_depth(const CameraOf<T>& camera, T time, Vec3<T> direction, T distance) {
     const T position = time * static_cast<T>(camera.key_count - 1);
     const int k =
         position < static_cast<T>(camera.key_count - 1) ? static_cast<int>(position) : camera.key_count - 1;
     const T* q = camera.keys[k].rotation;  // the nearer key: within the motion tolerance of the true axis
     const Vec3<T> axis{-2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
                      -(1 - 2 * (q[0] * q[0] + q[1] * q[1]))};
-    return axis.x * direction.x + axis.y * direction.y + axis.z * direction.z;
+    return camera.keys[k].start + distance * (axis.x * direction.x + axis.y * direction.y + axis.z * direction.z);
 }
 
 }  // namespace kadr::kernels

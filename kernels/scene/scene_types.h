@@ -103,12 +103,15 @@ using Light = LightOf<float>;
 /// A camera at one time of the shutter.
 template <class T>
 struct CameraKeyOf {
-    Vec3<T> position;  ///< relative to the render origin
+    Vec3<T> position;  ///< relative to the render origin; of the point of the view axis that is `start` in front of the camera
     T rotation[4];     ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
     T tan_half_width;  ///< perspective: half the image's width at unit distance; orthographic: half width in metres
     T tan_half_height;
     T lens_radius;     ///< metres; 0: pinhole
-    T focus_distance;  ///< metres along the view axis
+    T focus_distance;  ///< metres along the view axis, from there
+    /// Metres along the view axis from the camera to the plane that rays start on, the same for all keys; 0: they start at
+    /// the camera. Where it looks at something far away through a long lens, floats would lose the pixel on the way.
+    T start = 0;
 };
 using CameraKey = CameraKeyOf<float>;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -54,6 +55,10 @@ bool agree(const Members& members, const Value& value) {
 struct Eye {
     explicit Eye(const SceneSnapshot& snapshot) : key(snapshot.camera_keys.front()), orthographic(snapshot.camera.orthographic), height(snapshot.settings.height) {}
     double pixel_at(double distance_m) const { return 2.0 * key.tan_half_height / height * (orthographic ? 1.0 : distance_m); }
+    glm::dvec3 place() const {
+        const glm::dquat rotation(key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
+        return glm::dvec3(key.position.x, key.position.y, key.position.z) + rotation * glm::dvec3(0, 0, key.start);
+    }
     const kernels::CameraKey& key;
     bool orthographic;
     int height;
@@ -88,8 +93,11 @@ private:
         if (seen.instance == truth[0].instance) note_position(seen, truth[0]);
     }
 
-    /// Surfaces in one place, as far as floats tell distances apart: which of them is in front, not even the file says.
-    static bool same_place(const SurfaceHit& a, const SurfaceHit& b) { return std::abs(a.distance_m - b.distance_m) <= 8 * 0x1p-23 * b.distance_m; }
+    /// Surfaces in one place, as far as floats tell distances from where the ray starts apart: which of them is in front, not
+    /// even the file says.
+    bool same_place(const SurfaceHit& seen, const SurfaceHit& truth) const {
+        return std::abs(glm::dot(to_glm(seen.position) - to_glm(truth.position), to_viewer(truth))) <= 8 * 0x1p-23 * seen.distance_m;
+    }
 
     /// Across the ray: along it, nothing moves in the picture.
     void note_position(const SurfaceHit& seen, const SurfaceHit& truth) {
@@ -104,7 +112,7 @@ private:
 
     glm::dvec3 to_viewer(const SurfaceHit& hit) const {
         if (eye_.orthographic) return to_glm(hit.normal);
-        const glm::dvec3 to_camera = glm::dvec3(eye_.key.position.x, eye_.key.position.y, eye_.key.position.z) - to_glm(hit.position);
+        const glm::dvec3 to_camera = eye_.place() - to_glm(hit.position);
         const double distance = glm::length(to_camera);
         return distance > 0 ? to_camera / distance : to_glm(hit.normal);
     }

@@ -28,8 +28,8 @@ TEST(PrecisionWarnings, NoneForAnOrdinaryShot) {
 TEST(PrecisionWarnings, NamesTheCameraWhoseLensIsTooLong) {
     Stage stage;
     stage.shot.camera.focal_length_mm = Track<double>(10000);
-    // 36 mm over 1280 pixels, 10 m away: 2.8e-6 rad; 2^-24 of a radian is 0.021 of that.
-    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.8e-06 rad wide at 0 s, and the directions of rays are off by 0.021 of it")));
+    // 36 mm over 1280 pixels, 10 m: 2.8e-6 rad; 2^-24 of a radian is 0.021 of that.
+    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.8e-06 rad wide at 0 s, and rays, which start 5 m before what it looks at, are off by 0.021 of it")));
     stage.shot.camera.focal_length_mm = Track<double>(5000);
     EXPECT_THAT(warnings_of(stage), IsEmpty());
 }

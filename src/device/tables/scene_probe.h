@@ -86,7 +86,7 @@ private:
     /// The camera at a time, without its lens.
     kernels::CameraKeyOf<T> camera_key(T time) const {
         const kernels::CameraPose<T> pose = kernels::camera_at<T>(scene_.camera, time);
-        return {pose.position, {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, pose.tan_half_width, pose.tan_half_height, 0, 1};
+        return {pose.position, {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}, pose.tan_half_width, pose.tan_half_height, 0, 1, pose.start};
     }
 
     const kernels::SceneViewOf<T>& scene_;
