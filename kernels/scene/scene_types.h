@@ -96,7 +96,8 @@ struct LightOf {
     T inner_rad = 0, outer_rad = 0;
     T range = 0;               ///< metres; 0: infinite
     T radius = 0;              ///< point and spot: sphere of this radius; 0: a point
-    T cos_angular_radius = 1;  ///< directional: 1 is a parallel beam
+    /// Directional: 1 - cos of the angular radius, which keeps its digits where the cosine is 1; 0: a parallel beam.
+    T one_minus_cos = 0;
 };
 using Light = LightOf<float>;
 

@@ -136,7 +136,7 @@ std::vector<Axis> light_axes() {
         {.name = "elevation", .unit = "rad", .meaning = "of a sharp sun above the floor",
          .values = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.785, 1.5707963267948966}, .quick = {1e-6, 1e-3, 0.1, 0.785, 1.5707963267948966}, .ordinary = 0.785, .apply = set_elevation},
         {.name = "sun_diameter", .unit = "deg", .meaning = "apparent size of a sun",
-         .values = {0, 1e-6, 1e-3, 0.53, 10, 90, 180}, .quick = {0, 1e-6, 0.53, 180}, .ordinary = 0.53, .apply = set_sun_diameter},
+         .values = {0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.53, 10, 90, 180}, .quick = {0, 1e-6, 1e-3, 0.53, 180}, .ordinary = 0.53, .apply = set_sun_diameter},
         {.name = "sun_contrast", .unit = "", .meaning = "radiance of one pixel of an environment image over that of all others",
          .values = {1, 1e2, 1e4, 1e6}, .quick = {1, 1e2, 1e6}, .ordinary = 1e2, .apply = set_contrast},
         {.name = "range", .unit = "m", .meaning = "at which a lamp ends",
