@@ -12,6 +12,7 @@
 #include "frame/references.h"
 #include "frame/seen_distance.h"
 #include "frame/snapshot.h"
+#include "frame/thin_shells.h"
 
 namespace kadr {
 namespace {
@@ -66,6 +67,7 @@ public:
         check_distance();
         check_large_movers();
         check_meshes();
+        check_shells();
         check_lights();
         return std::move(found_);
     }
@@ -127,6 +129,14 @@ private:
                                         "move the vertices to the origin and the node to where they were"));
             return;
         }
+    }
+
+    void check_shells() {
+        const std::optional<ThinShell> shell = find_thin_shell(shot_, views_.front().time_s);
+        if (!shell) return;
+        const std::string what = shell->inner_node < 0 ? fmt::format("node '{}' is", name_of(shell->node)) : fmt::format("nodes '{}' and '{}' are a shell", name_of(shell->node), name_of(shell->inner_node));
+        found_.push_back(warning_at(where_of(shell->node), fmt::format("{} {:.3g} m thick and {:.3g} m large: rays that leave one side may start beyond the other", what, shell->thickness_m, shell->size_m),
+                                    fmt::format("make it thicker than {:.0e} of its size, or leave one side out", kThinnestShell)));
     }
 
     void check_lights() {
