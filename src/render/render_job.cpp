@@ -107,6 +107,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     budget_ = ShotBudget(loaded_->shot().render.time_budget_shot_s, [this] { return total_.seconds(); });
     summary_.device = device_.device->name();
     summary_.device_why = device_.why;
+    if (const std::optional<Slipping> slipping = loaded_->slipping(); slipping && device_.device->has_robust_rays()) summary_.device_why += "; robust rays: " + slipping->text();
     summary_.times.load = total_.seconds();
 }
 

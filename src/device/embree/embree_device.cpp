@@ -82,6 +82,8 @@ public:
                            width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
     }
 
+    bool has_robust_rays() const override { return true; }
+
     void load(const Scene& scene, const Image* environment, const BuildSettings& build) override {
         const auto begin = std::chrono::steady_clock::now();
         arena_.execute([&] { scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, environment, build); });
