@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -270,8 +271,9 @@ void print_stress_summary(const Invocation& invocation, const std::vector<stress
 }
 
 int run_stress(const Invocation& invocation) {
-    if (!invocation.json) print(kStressHead);
+    bool first = !invocation.json;
     const auto results = stress::run_sweep(invocation.stress, [&](const stress::CellResult& result, std::size_t, std::size_t) {
+        if (std::exchange(first, false)) print(kStressHead);  // now that the names of the axes are known to be right
         print(invocation.json ? stress_json(result) : stress_line(result));
         std::fflush(stdout);
     });
