@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTooMany = 1e-4;
 constexpr double kFloat = 0x1p-24;
-/// Measured: rays from the middle of spheres of 512 to 2 million triangles, Embree 3.13.5, single rays.
+/// Measured: rays from the middle of spheres of 256 to a million triangles, Embree 3.13.5, single rays.
 constexpr double kOfNearRays = 0.12;
 /// Instances that are looked at; of more, a sample.
 constexpr std::size_t kMostLookedAt = 4096;
