@@ -59,18 +59,19 @@ template <class F>
 struct CameraPose {
     Vec3<F> position;
     Quaternion<F> rotation;
-    F tan_half_width, tan_half_height, lens_radius, focus_distance;
+    F tan_half_width, tan_half_height, lens_radius, focus_distance, start;
 };
 
-static_assert(sizeof(CameraKey) == 11 * sizeof(float), "gathered as floats");
+static_assert(sizeof(CameraKey) == 12 * sizeof(float), "gathered as floats");
 
 template <class F>
 SHARED_FN CameraPose<F> camera_key(const CameraOf<Real<F>>& camera, Int<F> key) {
     const Real<F>* k = &camera.keys->position.x;
-    const Int<F> i = key * Int<F>(11);
+    const Int<F> i = key * Int<F>(12);
     return {gather_vec3<F>(k, i), {gather(k + 3, i), gather(k + 4, i), gather(k + 5, i), gather(k + 6, i)},
             gather(k + 7, i),     gather(k + 8, i),
-            gather(k + 9, i),     gather(k + 10, i)};
+            gather(k + 9, i),     gather(k + 10, i),
+            gather(k + 11, i)};
 }
 
 /// One key for all lanes.
@@ -78,7 +79,8 @@ template <class F>
 SHARED_FN CameraPose<F> camera_key_uniform(const CameraKeyOf<Real<F>>& k) {
     return {splat<F>(k.position), {F(k.rotation[0]), F(k.rotation[1]), F(k.rotation[2]), F(k.rotation[3])},
             F(k.tan_half_width),  F(k.tan_half_height),
-            F(k.lens_radius),     F(k.focus_distance)};
+            F(k.lens_radius),     F(k.focus_distance),
+            F(k.start)};
 }
 
 template <class F>
@@ -88,7 +90,8 @@ SHARED_FN CameraPose<F> interpolate(const CameraPose<F>& a, const CameraPose<F>&
             lerp(a.tan_half_width, b.tan_half_width, t),
             lerp(a.tan_half_height, b.tan_half_height, t),
             lerp(a.lens_radius, b.lens_radius, t),
-            lerp(a.focus_distance, b.focus_distance, t)};
+            lerp(a.focus_distance, b.focus_distance, t),
+            a.start};
 }
 
 /// The camera at a time of the shutter in [0, 1].
@@ -109,7 +112,8 @@ SHARED_FN Vec2<F> sample_aperture(int blades, Vec2<F> u) {
     return blades >= 3 ? sample_polygon(blades, u) : sample_disk(u);
 }
 
-/// A ray through the film, in world space relative to the render origin.
+/// A ray through the film, in world space relative to the render origin. It starts on the plane that the camera's key
+/// speaks of: at the camera, or before all that it sees.
 ///
 /// @param film_px    pixels; x right, y down
 /// @param time       [0, 1] over the shutter
@@ -124,14 +128,18 @@ SHARED_FN void camera_ray(const CameraOf<Real<F>>& camera, int width, int height
     const F zero(0.0f);
     Vec3<F> from = camera.orthographic ? Vec3<F>{x, y, zero} : Vec3<F>{zero, zero, zero};
     Vec3<F> to = camera.orthographic ? Vec3<F>{zero, zero, F(-1.0f)} : Vec3<F>{x, y, F(-1.0f)};
+    const Vec3<F> ahead_of_camera{to.x * pose.start, to.y * pose.start, zero};
     const Mask<F> thin_lens = pose.lens_radius > zero;
     if (any(thin_lens)) {
         // Everything at the focus distance stays where the pinhole sees it.
         const Vec2<F> at = sample_aperture(camera.blades, lens) * select(thin_lens, pose.lens_radius, zero);
-        const F per_metre = F(1.0f) / select(thin_lens, pose.focus_distance, F(1.0f));
-        from = from + Vec3<F>{at.x, at.y, zero};
+        const F ahead = select(thin_lens, pose.focus_distance, F(1.0f));
+        const F per_metre = F(1.0f) / (ahead + pose.start);
+        const F left = ahead / (ahead + pose.start);  // of the way to the focus, and so of the distance from the pinhole's ray
+        from = from + Vec3<F>{at.x * left, at.y * left, zero};
         to = to - Vec3<F>{at.x * per_metre, at.y * per_metre, zero};
     }
+    from = from + ahead_of_camera;
     origin = pose.position + rotate(pose.rotation, from);
     direction = normalize(rotate(pose.rotation, to));
 }
@@ -142,7 +150,7 @@ template <class F>
 SHARED_FN Vec2<F> project(const CameraOf<Real<F>>& camera, int width, int height, Vec3<F> p, F time) {
     const CameraPose<F> pose = camera_at(camera, time);
     const Vec3<F> local = rotate_back(pose.rotation, p - pose.position);
-    const F depth = camera.orthographic ? F(1.0f) : max(-local.z, least_divisor<F>(1e-9f));
+    const F depth = camera.orthographic ? F(1.0f) : max(pose.start - local.z, least_divisor<F>(1e-9f));
     const F x = local.x / (depth * pose.tan_half_width);
     const F y = local.y / (depth * pose.tan_half_height);
     return {(x + F(1.0f)) * F(0.5f * static_cast<float>(width)), (F(1.0f) - y) * F(0.5f * static_cast<float>(height))};

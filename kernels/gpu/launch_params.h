@@ -79,7 +79,7 @@ static_assert(sizeof(FilmBeauty) == 32 && sizeof(FilmVector) == 24 && sizeof(Fil
 static_assert(sizeof(LaunchCounters) == 32, "read back by the host");
 static_assert(sizeof(Material) == 216 && sizeof(Texture) == 24 && sizeof(Geometry) == 64 && sizeof(Instance) == 12 &&
                   sizeof(InstanceMotion) == 12 && sizeof(Affine) == 48 && sizeof(TransformKey) == 52 &&
-                  sizeof(Light) == 92 && sizeof(CameraKey) == 44 && sizeof(FilterTable) == 2068 &&
+                  sizeof(Light) == 92 && sizeof(CameraKey) == 48 && sizeof(FilterTable) == 2068 &&
                   sizeof(Shutter) == 2072,
               "elements of the tables that the host uploads as they are");
 static_assert(sizeof(EnvironmentMap) == 56 && sizeof(LightSet) == 160 && sizeof(Camera) == 32 &&

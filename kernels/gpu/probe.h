@@ -55,7 +55,8 @@ SHARED_FN ProbeHitOf<T> look(const SceneViewOf<T>& scene, Tracer& tracer, Vec2f 
                              pose.tan_half_width,
                              pose.tan_half_height,
                              0,
-                             1};
+                             1,
+                             pose.start};
     CameraOf<T> pinhole = scene.camera;
     pinhole.keys = &key;
     pinhole.key_count = 1;
@@ -71,12 +72,18 @@ SHARED_FN ProbeHitOf<T> look(const SceneViewOf<T>& scene, Tracer& tracer, Vec2f 
     return {hit.instance, hit.primitive, hit.u, hit.v, hit.distance, at.position, at.geometric_normal};
 }
 
+/// Where a shadow ray starts.
+template <class T, unsigned R>
+SHARED_FN Interaction<T> surface_of(const SceneViewOf<T>& scene, const ProbeShadowOf<T>& ray, T time) {
+    const Hit<T> from{ray.instance, ray.primitive, ray.u, ray.v, 0};
+    return make_interaction<T, R>(scene, from, time, ray.to_viewer, true);
+}
+
 /// Whether a shadow ray is stopped; so is one that could not be followed.
 template <class T, unsigned R, class Tracer>
 SHARED_FN bool is_occluded(const SceneViewOf<T>& scene, Tracer& tracer, const ProbeShadowOf<T>& ray, T time) {
-    const Hit<T> from{ray.instance, ray.primitive, ray.u, ray.v, 0};
     ShadowRay<T> shadow{};
-    shadow.origin = make_interaction<T, R>(scene, from, time, ray.to_viewer, true).origin;
+    shadow.origin = surface_of<T, R>(scene, ray, time).origin;
     shadow.direction = ray.direction;
     shadow.distance = ray.distance;
     if (!is_finite(shadow.origin) || !is_finite(shadow.direction)) return true;

@@ -122,7 +122,7 @@ private:
         result_.met_surface = true;
         result_.albedo = albedo;
         result_.normal = normal;
-        result_.depth = hit.distance * view_cosine(params_.scene.camera, path_.time, path_.direction);
+        result_.depth = view_depth(params_.scene.camera, path_.time, path_.direction, hit.distance);
         if (params_.scene.previous_matrices)
             result_.motion = motion_of_point(params_.scene, static_cast<unsigned>(hit.instance),
                                              static_cast<unsigned>(hit.primitive), hit.u, hit.v);

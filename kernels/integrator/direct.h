@@ -44,7 +44,7 @@ SHARED_FN DirectResult<F> shade_direct(const SceneFor<F>& scene, const PathState
         ShadowRay<F> ray;
         ray.origin = it.origin;
         ray.direction = light.direction;
-        ray.distance = light.distance * F(1.0f - 1e-4f);
+        ray.distance = shadow_distance(light.distance);
         ray.radiance = covered * f * light.radiance * cosine;
         ray.active =
             lit & (max_component(ray.radiance) > F(0.0f)) & (dot(light.direction, it.geometric_normal) > F(0.0f));

@@ -50,12 +50,33 @@ SHARED_FN Vec3<F> offset_origin(Vec3<F> p, Vec3<F> n) {
 /// as its points from what they turn about, and rays have to start clear of it.
 inline constexpr float kSlerpError = 2.5e-5f;
 
+/// That of an instance, radians.
+SHARED_FN float slerp_error(const InstanceMotion& motion) {
+    return motion.kind == InstanceMotion::Kind::keys ? kSlerpError : 0.0f;
+}
+
 /// How far rays start from a surface beyond the offset in its mesh's own coordinates. The reference in double also stays
 /// clear of what rounding leaves of a place in the world.
 template <class F>
 SHARED_FN F clearance(F rotation_error_m, const Interaction<F>& it) {
     if constexpr (sizeof(Real<F>) == 8) return rotation_error_m + length(it.position) * 0x1p-49;
     return rotation_error_m;
+}
+
+/// How far off an emissive triangle shadow rays to it end, metres: what rounding may displace it by in its mesh and in the
+/// world. Closer, the triangle and its neighbours would hide the light that they send. A sixteenth of what rays start off a
+/// surface with: they are told to end at the triangle, and only have to stop short of it.
+/// @param at       world_from_object
+/// @param p        the point, in the mesh's coordinates
+/// @param corners  of the triangle, there
+template <class T>
+SHARED_FN T emitter_clearance(const AffineOf<T>& at, Vec3<T> p, const Vec3<T> (&corners)[3]) {
+    const Vec3<T> edge1 = corners[1] - corners[0], edge2 = corners[2] - corners[0];
+    const Vec3<T> normal = cross(edge1, edge2), world_normal = cross(vector_by(at, edge1), vector_by(at, edge2));
+    const T lengths = length(normal) * length(world_normal);
+    // Metres off the triangle for a unit of the mesh's coordinates off it.
+    const T metres = abs(dot(vector_by(at, normal), world_normal)) / max(lengths, least_divisor<T>(1e-30f));
+    return end_rounding<T>() * (T(2.0f) * length(p) * metres + length(point_by(at, p)));
 }
 
 /// A 3x4 matrix in every lane.
@@ -278,7 +299,7 @@ SHARED_FN Interaction<F> make_interaction(const SceneFor<F>& scene, const Hit<F>
                 for (int k = 0; k < 4; ++k) set_lane(world_from_object.m[r][k], i, at.m[r][k]);
             const InstanceMotion& motion = scene.motions[instance_index];
             set_lane(placed, i, !motion.identity);
-            set_lane(rotation_error, i, motion.kind == InstanceMotion::Kind::keys ? kSlerpError : 0.0f);
+            set_lane(rotation_error, i, slerp_error(motion));
         }
         if constexpr (kMaps)
             fetch_maps<F, R>(scene.materials[instance.material], g, keys, index, lane(hit.u, from), lane(hit.v, from),

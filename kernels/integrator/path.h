@@ -207,30 +207,42 @@ SHARED_FN T stretched_density(const EmissiveTriangleOf<T>& triangle, Vec3<T> dou
     return sqrt(dot(then, then) / max(dot(doubled_area, doubled_area), least_divisor<T>(1e-30f)));
 }
 
-/// Replaces what a moving or textured emitter has of its own at (b1, b2).
+/// What a moving or textured emitter has of its own at a point.
 template <class T>
-SHARED_FN void look_up_emitter(const SceneViewOf<T>& scene, const EmissiveTriangleOf<T>& triangle, T time, T b1, T b2,
-                               Vec3<T>& point, Vec3<T>& normal, Vec3<T>& emission) {
+struct EmitterPoint {
+    Vec3<T> position, normal;  ///< the normal is twice the triangle's area long
+    Vec3<T> emission;
+    T clearance;
+};
+
+/// @param b1, b2  weights of the second and the third corner
+template <class T>
+SHARED_FN EmitterPoint<T> look_up_emitter(const SceneViewOf<T>& scene, const EmissiveTriangleOf<T>& triangle, T time,
+                                          T b1, T b2) {
     const Instance& instance = scene.instances[triangle.instance];
     const Geometry& g = scene.geometries[instance.geometry];
     const unsigned* index = g.indices + 3 * static_cast<unsigned long>(triangle.primitive);
     const AffineOf<T> at = transform_at(scene, triangle.instance, time);
     const VertexKeys<T> keys = vertex_keys(g, time);
-    Vec3<T> corners[3];
+    Vec3<T> own[3], corners[3];
     for (int c = 0; c < 3; ++c) {
-        const Vec3<T> q = position_at(g, keys, index[c]);
-        corners[c] = {at.m[0][0] * q.x + at.m[0][1] * q.y + at.m[0][2] * q.z + at.m[0][3],
-                      at.m[1][0] * q.x + at.m[1][1] * q.y + at.m[1][2] * q.z + at.m[1][3],
-                      at.m[2][0] * q.x + at.m[2][1] * q.y + at.m[2][2] * q.z + at.m[2][3]};
+        own[c] = position_at(g, keys, index[c]);
+        corners[c] = point_by(at, own[c]);
     }
-    point = barycentric(corners[0], corners[1], corners[2], b1, b2);
-    normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    EmitterPoint<T> point;
+    point.position = barycentric(corners[0], corners[1], corners[2], b1, b2);
+    point.normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    point.emission = triangle.emission;
+    point.clearance = emitter_clearance(at, barycentric(own[0], own[1], own[2], b1, b2), own) +
+                      slerp_error(scene.motions[triangle.instance]) *
+                          length(point.position - Vec3<T>{at.m[0][3], at.m[1][3], at.m[2][3]});
     const TextureSlot& slot = scene.materials[instance.material].emissive_texture;
-    if (slot.texture < 0) return;
+    if (slot.texture < 0) return point;
     const Vec4<T> t =
         sample_texture<T>(scene.textures, slot.texture,
                           apply_transform(slot, uv_at(g, index, 0, b1, b2), uv_at(g, index, 1, b1, b2)), true);
-    emission = emission * Vec3<T>{t.x, t.y, t.z};
+    point.emission = point.emission * Vec3<T>{t.x, t.y, t.z};
+    return point;
 }
 
 /// A point on an emissive triangle, chosen in proportion to luminance * area.
@@ -246,7 +258,7 @@ SHARED_FN LightSample<F> sample_emitters(const SceneFor<F>& scene, Vec3<F> p, F 
         chosen[i] = lights.triangles + find_in_cdf(lights.triangle_cdf, lights.triangle_count, static_cast<float>(lane(choice, i)));
         rows[0][i] = &chosen[i]->corner.x;
         rows[1][i] = rows[0][i] + 8;
-        varies |= chosen[i]->varies << i;
+        varies |= (chosen[i]->primitive != EmissiveTriangleOf<T>::kStands ? 1u : 0u) << i;
     }
     F first[8], second[8];
     load_rows(rows[0], first);
@@ -263,20 +275,23 @@ SHARED_FN LightSample<F> sample_emitters(const SceneFor<F>& scene, Vec3<F> p, F 
     s.radiance = {second[1], second[2], second[3]};
     for (unsigned todo = varies & bits(active); todo; todo &= todo - 1) {
         const int i = lowest_bit(todo);
-        Vec3<T> at{}, facing{}, emission = chosen[i]->emission;
-        look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i), at, facing, emission);
+        const EmitterPoint<T> at = look_up_emitter(scene, *chosen[i], lane(time, i), lane(b1, i), lane(b2, i));
         if (scene.geometries[scene.instances[chosen[i]->instance].geometry].key_count > 1)
-            set_lane(second[4], i, lane(second[4], i) * stretched_density(*chosen[i], facing));
-        set_vec(point, i, at);
-        set_vec(normal, i, facing);
-        set_vec(s.radiance, i, emission);
+            set_lane(second[4], i, lane(second[4], i) * stretched_density(*chosen[i], at.normal));
+        set_vec(point, i, at.position);
+        set_vec(normal, i, at.normal);
+        set_vec(s.radiance, i, at.emission);
+        set_lane(second[5], i, at.clearance);
     }
     const Vec3<F> d = point - p;
     const F distance2 = max(dot(d, d), least_divisor<F>(1e-30f));
-    s.distance = sqrt(distance2);
-    s.direction = d * (F(1.0f) / s.distance);
-    const F cosine = abs(dot(normal, s.direction)) / max(length(normal), least_divisor<F>(1e-30f));
-    s.pdf = second[4] * distance2 / max(cosine, least_divisor<F>(1e-7f));
+    const F distance = sqrt(distance2);
+    s.direction = d * (F(1.0f) / distance);
+    const F cosine =
+        max(abs(dot(normal, s.direction)) / max(length(normal), least_divisor<F>(1e-30f)), least_divisor<F>(1e-7f));
+    s.pdf = second[4] * distance2 / cosine;
+    // Its own triangles, which rays meet like all others, must not hide it.
+    s.distance = max(distance - second[5] / cosine, F(0.0f));
     return s;
 }
 
@@ -400,8 +415,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
     const Vec3<F> direct = path.beta * value.f_cos * light.radiance * (weight / max(light.pdf, least_divisor<F>(1e-30f)));
     result.shadow.origin = it.origin;
     result.shadow.direction = light.direction;
-    // A light's own surface must not hide it.
-    result.shadow.distance = light.distance * F(1.0f - 1e-4f);
+    result.shadow.distance = shadow_distance(light.distance);
     result.shadow.radiance = clamp_contribution(settings, total == UInt<F>(0u), direct);
     result.shadow.active = active & (light.pdf > F(0.0f)) & (max_component(direct) > F(0.0f)) &
                            (dot(light.direction, it.geometric_normal) > F(0.0f));

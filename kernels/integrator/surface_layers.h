@@ -17,29 +17,25 @@ SHARED_FN Vec2<T> motion_of_point(const SceneViewOf<T>& scene, unsigned instance
         point(g.vertices[index[0]].position, g.vertices[index[1]].position, g.vertices[index[2]].position);
     const Vec3<T> earlier =
         g.previous ? point(g.previous[index[0]], g.previous[index[1]], g.previous[index[2]]) : opening;
-    const auto place = [&](const AffineOf<T>& a, Vec3<T> p) {
-        return Vec3<T>{a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3],
-                     a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
-                     a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
-    };
     const int width = scene.settings.width, height = scene.settings.height;
     const Vec2<T> now =
-        project<T>(scene.camera, width, height, place(transform_at(scene, instance, T(0.0f)), opening), T(0.0f));
+        project<T>(scene.camera, width, height, point_by(transform_at(scene, instance, T(0.0f)), opening), T(0.0f));
     const Vec2<T> before =
-        project<T>(scene.previous_camera, width, height, place(scene.previous_matrices[instance], earlier), T(0.0f));
+        project<T>(scene.previous_camera, width, height, point_by(scene.previous_matrices[instance], earlier), T(0.0f));
     return {now.x - before.x, now.y - before.y};
 }
 
-/// Cosine between a camera ray and the view axis, which makes a distance a depth.
+/// How far from the camera a hit of a camera ray is, along the view axis.
+/// @param distance  along the ray, from where it starts
 template <class T>
-SHARED_FN T view_cosine(const CameraOf<T>& camera, T time, Vec3<T> direction) {
+SHARED_FN T view_depth(const CameraOf<T>& camera, T time, Vec3<T> direction, T distance) {
     const T position = time * static_cast<T>(camera.key_count - 1);
     const int k =
         position < static_cast<T>(camera.key_count - 1) ? static_cast<int>(position) : camera.key_count - 1;
     const T* q = camera.keys[k].rotation;  // the nearer key: within the motion tolerance of the true axis
     const Vec3<T> axis{-2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
                      -(1 - 2 * (q[0] * q[0] + q[1] * q[1]))};
-    return axis.x * direction.x + axis.y * direction.y + axis.z * direction.z;
+    return camera.keys[k].start + distance * (axis.x * direction.x + axis.y * direction.y + axis.z * direction.z);
 }
 
 }  // namespace kadr::kernels

@@ -16,7 +16,7 @@ inline constexpr float kFar = 1e30f;
 template <class F>
 struct LightSample {
     Vec3<F> direction;  ///< unit, towards the light
-    F distance;         ///< metres; kFar for directional lights
+    F distance;         ///< metres, to the light or as far as nothing may lie in between; kFar for directional lights
     Vec3<F> radiance;   ///< incident radiance; for delta lights the irradiance of a surface facing the light
     F pdf;              ///< per steradian; 1 for delta lights; 0: no light from here
 };
@@ -33,7 +33,7 @@ struct LightHit {
 template <class F>
 struct LightAt {
     Vec3<F> radiance, position, direction, axis_u, axis_v;
-    F cos_inner, cos_outer, inner_rad, outer_rad, range, radius, cos_angular_radius;
+    F cos_inner, cos_outer, inner_rad, outer_rad, range, radius, one_minus_cos;
 };
 
 static_assert(sizeof(Light) % sizeof(float) == 0 && sizeof(LightOf<double>) % sizeof(double) == 0, "gathered as numbers");
@@ -41,15 +41,22 @@ static_assert(sizeof(Light) % sizeof(float) == 0 && sizeof(LightOf<double>) % si
 /// Whether no ray can meet the light by chance: a parallel beam, a point.
 template <class T>
 SHARED_FN bool is_delta(const LightOf<T>& light) {
-    if (light.kind == LightKind::directional) return light.cos_angular_radius >= 1.0f;
+    if (light.kind == LightKind::directional) return light.one_minus_cos <= 0.0f;
     return light.kind != LightKind::area && light.radius <= 0.0f;
+}
+
+/// How far a shadow ray to a light goes: to the light itself, but for rounding, so that whatever lies just before it hides
+/// it, and what it lies in front of does not.
+template <class F>
+SHARED_FN F shadow_distance(F light_distance) {
+    return light_distance * (F(1.0f) - end_rounding<F>());
 }
 
 template <class F>
 SHARED_FN LightAt<F> light_uniform(const LightOf<Real<F>>& l) {
     return {splat<F>(l.radiance), splat<F>(l.position), splat<F>(l.direction), splat<F>(l.axis_u),
             splat<F>(l.axis_v),   F(l.cos_inner),       F(l.cos_outer),        F(l.inner_rad),
-            F(l.outer_rad),       F(l.range),           F(l.radius),           F(l.cos_angular_radius)};
+            F(l.outer_rad),       F(l.range),           F(l.radius),           F(l.one_minus_cos)};
 }
 
 template <class F>
@@ -66,7 +73,7 @@ SHARED_FN LightAt<F> light_gathered(const LightOf<Real<F>>* keys, Int<F> key) {
             gather(&keys->outer_rad, i),
             gather(&keys->range, i),
             gather(&keys->radius, i),
-            gather(&keys->cos_angular_radius, i)};
+            gather(&keys->one_minus_cos, i)};
 }
 
 template <class F>
@@ -82,7 +89,7 @@ SHARED_FN LightAt<F> interpolate(const LightAt<F>& a, const LightAt<F>& b, F t) 
             lerp(a.outer_rad, b.outer_rad, t),
             lerp(a.range, b.range, t),
             lerp(a.radius, b.radius, t),
-            lerp(a.cos_angular_radius, b.cos_angular_radius, t)};
+            lerp(a.one_minus_cos, b.one_minus_cos, t)};
 }
 
 /// The light at a time of the shutter in [0, 1]: its values between two keys, linearly.
@@ -109,7 +116,7 @@ SHARED_FN Light light_at(const Light* keys, int count, float time) {
     l.outer_rad = at.outer_rad;
     l.range = at.range;
     l.radius = at.radius;
-    l.cos_angular_radius = at.cos_angular_radius;
+    l.one_minus_cos = at.one_minus_cos;
     return l;
 }
 
@@ -163,20 +170,24 @@ SHARED_FN F cone_pdf(F one_minus_cos) {
     return select(valid, F(0.5f * kInvPi) / select(valid, one_minus_cos, F(1.0f)), F(0.0f));
 }
 
+/// Squared sine of a sun's angular radius.
+template <class F>
+SHARED_FN F sun_sin2(const LightAt<F>& l) {
+    return l.one_minus_cos * (F(2.0f) - l.one_minus_cos);
+}
+
 /// Radiance of a cone sun that gives E lux: E over the projected solid angle pi sin^2.
 template <class F>
 SHARED_FN Vec3<F> sun_radiance(const LightAt<F>& l) {
-    const F sin2 = (F(1.0f) - l.cos_angular_radius) * (F(1.0f) + l.cos_angular_radius);
-    return l.radiance * (F(kInvPi) / max(sin2, least_divisor<F>(1e-12f)));
+    return l.radiance * (F(kInvPi) / max(sun_sin2(l), least_divisor<F>(1e-30f)));
 }
 
 template <class F>
 SHARED_FN LightSample<F> sample_directional(const LightOf<Real<F>>& light, const LightAt<F>& l, Vec2<F> u) {
     const Vec3<F> axis = -l.direction;
     if (is_delta(light)) return {axis, F(kFar), l.radiance, F(1.0f)};
-    const F one_minus_cos = F(1.0f) - l.cos_angular_radius;
-    return {normalize(Frame<F>(axis).to_world(sample_cone(one_minus_cos, u))), F(kFar), sun_radiance(l),
-            cone_pdf(one_minus_cos)};
+    return {normalize(Frame<F>(axis).to_world(sample_cone(l.one_minus_cos, u))), F(kFar), sun_radiance(l),
+            cone_pdf(l.one_minus_cos)};
 }
 
 /// Squared distance that can be divided by.
@@ -250,10 +261,8 @@ template <class F>
 SHARED_FN LightHit<F> intersect_sun(const LightAt<F>& l, Vec3<F> direction) {
     // By the sine: the cosine of a quarter of a degree has three digits left.
     const Vec3<F> sine = cross(direction, l.direction);
-    const F one_minus_cos = F(1.0f) - l.cos_angular_radius;
-    const F sin2 = one_minus_cos * (F(1.0f) + l.cos_angular_radius);
-    const Mask<F> hit = (dot(sine, sine) <= sin2) & (dot(direction, l.direction) < F(0.0f));
-    return masked_hit<F>(hit, F(kFar), sun_radiance(l), cone_pdf(one_minus_cos));
+    const Mask<F> hit = (dot(sine, sine) <= sun_sin2(l)) & (dot(direction, l.direction) < F(0.0f));
+    return masked_hit<F>(hit, F(kFar), sun_radiance(l), cone_pdf(l.one_minus_cos));
 }
 
 template <class F>

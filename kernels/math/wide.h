@@ -77,6 +77,14 @@ SHARED_FN F least_divisor(float in_float) {
     return F(in_float);
 }
 
+/// How far rounding may displace the end of a shadow ray, as a part of its length and of the coordinates about it: eight units
+/// in the last place.
+template <class F>
+SHARED_FN F end_rounding() {
+    if constexpr (sizeof(Real<F>) == 8) return F(0x1p-50);
+    return F(0x1p-21f);
+}
+
 inline constexpr float kPi = 3.14159265358979f;
 inline constexpr float kInvPi = 0.318309886183791f;
 /// Largest float below 1: what a random number in [0, 1) may be.

@@ -40,6 +40,18 @@ SHARED_FN AffineOf<T> compose(const TransformKeyOf<T>& k) {
     return a;
 }
 
+template <class T>
+SHARED_FN Vec3<T> vector_by(const AffineOf<T>& a, Vec3<T> v) {
+    return {a.m[0][0] * v.x + a.m[0][1] * v.y + a.m[0][2] * v.z, a.m[1][0] * v.x + a.m[1][1] * v.y + a.m[1][2] * v.z,
+            a.m[2][0] * v.x + a.m[2][1] * v.y + a.m[2][2] * v.z};
+}
+template <class T>
+SHARED_FN Vec3<T> point_by(const AffineOf<T>& a, Vec3<T> p) {
+    return {a.m[0][0] * p.x + a.m[0][1] * p.y + a.m[0][2] * p.z + a.m[0][3],
+            a.m[1][0] * p.x + a.m[1][1] * p.y + a.m[1][2] * p.z + a.m[1][3],
+            a.m[2][0] * p.x + a.m[2][1] * p.y + a.m[2][2] * p.z + a.m[2][3]};
+}
+
 /// The transform between two keys.
 template <class T>
 SHARED_FN TransformKeyOf<T> interpolate(const TransformKeyOf<T>& a, const TransformKeyOf<T>& b, T t) {

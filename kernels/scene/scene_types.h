@@ -100,19 +100,23 @@ struct LightOf {
     T inner_rad = 0, outer_rad = 0;
     T range = 0;               ///< metres; 0: infinite
     T radius = 0;              ///< point and spot: sphere of this radius; 0: a point
-    T cos_angular_radius = 1;  ///< directional: 1 is a parallel beam
+    /// Directional: 1 - cos of the angular radius, which keeps its digits where the cosine is 1; 0: a parallel beam.
+    T one_minus_cos = 0;
 };
 using Light = LightOf<float>;
 
 /// A camera at one time of the shutter.
 template <class T>
 struct CameraKeyOf {
-    Vec3<T> position;  ///< relative to the render origin
+    Vec3<T> position;  ///< relative to the render origin; of the point of the view axis that is `start` in front of the camera
     T rotation[4];     ///< world_from_camera quaternion x y z w; the camera looks along its -z, +y up
     T tan_half_width;  ///< perspective: half the image's width at unit distance; orthographic: half width in metres
     T tan_half_height;
     T lens_radius;     ///< metres; 0: pinhole
-    T focus_distance;  ///< metres along the view axis
+    T focus_distance;  ///< metres along the view axis, from there
+    /// Metres along the view axis from the camera to the plane that rays start on, the same for all keys; 0: they start at
+    /// the camera. Where it looks at something far away through a long lens, floats would lose the pixel on the way.
+    T start = 0;
 };
 using CameraKey = CameraKeyOf<float>;
 

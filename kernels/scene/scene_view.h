@@ -37,14 +37,16 @@ struct InstanceMotion {
 
 /// A triangle that emits, at the shutter's opening. Chosen in proportion to luminance * world area.
 template <class T>
-struct EmissiveTriangleOf {
-    // Sixteen floats, fetched together (see load_rows): keep their order.
+struct alignas(16 * sizeof(T)) EmissiveTriangleOf {
+    // Sixteen numbers, fetched together (see load_rows): keep their order.
     Vec3<T> corner;        ///< relative to the render origin
     Vec3<T> edge1, edge2;  ///< to the second and third corner
     Vec3<T> emission;      ///< radiance; of a textured emitter the factor
     T density;             ///< pdf per area of a point on it
-    unsigned instance, primitive;
-    unsigned varies;  ///< 1: textured, moving or bending, so that a point of it has to be looked up
+    T clearance;           ///< metres off its surface at which shadow rays to it end (see emitter_clearance)
+    unsigned instance;
+    unsigned primitive;    ///< of a triangle that is textured, moves or bends, so that a point of it has to be looked up; kStands
+    static constexpr unsigned kStands = 0xffffffffu;
 };
 using EmissiveTriangle = EmissiveTriangleOf<float>;
 static_assert(sizeof(EmissiveTriangle) == 64, "fetched as sixteen floats");

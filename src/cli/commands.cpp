@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -278,16 +279,17 @@ std::string stress_line(const stress::CellResult& r) {
 void print_stress_summary(const Invocation& invocation, const std::vector<stress::CellResult>& results, const std::filesystem::path& page) {
     const stress::RayFigures rays = stress::total_rays(results);
     if (invocation.json)
-        return print(json_line({{"event", "summary"}, {"page", page.string()}, {"cells", results.size()}, {"shadow_rays", rays.shadow_rays}, {"false_shadows", rays.false_shadows}, {"leaks", rays.leaks}}));
+        return print(json_line({{"event", "summary"}, {"page", page.string()}, {"cells", results.size()}, {"shadow_rays", rays.shadow_rays}, {"light_rays", rays.light_rays}, {"false_shadows", rays.false_shadows}, {"leaks", rays.leaks}}));
     print("\nsafe ranges:\n");
     for (const stress::SafeRange& range : stress::safe_ranges(results)) print(fmt::format("  {:<18} {}{}\n", range.axis->name, range.text(), range.complete ? "" : "   (the sweep goes on)"));
-    print(fmt::format("{} camera rays, {} shadow rays: {} holes, {} wrong surfaces, {} false shadows, {} leaks\nreport: {}\n", rays.camera_rays, rays.shadow_rays, rays.holes,
+    print(fmt::format("{} camera rays, {} shadow rays, {} rays to lights: {} holes, {} wrong surfaces, {} false shadows, {} leaks\nreport: {}\n", rays.camera_rays, rays.shadow_rays, rays.light_rays, rays.holes,
                       rays.wrong_surfaces, rays.false_shadows, rays.leaks, page.string()));
 }
 
 int run_stress(const Invocation& invocation) {
-    if (!invocation.json) print(kStressHead);
+    bool first = !invocation.json;
     const auto results = stress::run_sweep(invocation.stress, [&](const stress::CellResult& result, std::size_t, std::size_t) {
+        if (std::exchange(first, false)) print(kStressHead);  // now that the names of the axes are known to be right
         print(invocation.json ? stress_json(result) : stress_line(result));
         std::fflush(stdout);
     });

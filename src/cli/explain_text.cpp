@@ -72,7 +72,7 @@ std::string extensions_text(const std::vector<FileExtensions>& files) {
 std::string kernels_text(const Explanation& e) {
     std::string text = fmt::format("kernels\n  {}: {}\n", e.device, e.device_why);
     for (const KernelUse& use : e.kernels) text += fmt::format("  {}: frame{} {}\n", use.name == "nothing" ? e.integrator + ", plain" : e.integrator + " with " + use.name, use.frames.size() == 1 ? "" : "s", fmt::join(use.frames, ", "));
-    return text;
+    return text + fmt::format("  robust rays: {}\n", e.robust);
 }
 
 double mebibytes(double bytes) { return bytes / 1048576; }
@@ -150,6 +150,7 @@ Json explanation_json(const Explanation& e) {
             {"device", {{"name", e.device}, {"why", e.device_why}}},
             {"integrator", e.integrator},
             {"kernels", json_of(e.kernels)},
+            {"robust", e.robust},
             {"memory", json_of(e.memory)},
             {"cost", json_of_cost(e)},
             {"warnings", warnings}};

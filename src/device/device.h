@@ -60,7 +60,8 @@ struct DeviceStatistics {
 /// How acceleration structures are built, of a whole shot.
 struct BuildSettings {
     BuildQuality quality = BuildQuality::medium;
-    bool robust = false;  ///< rays cannot slip between triangles that share an edge
+    /// Whether rays must not slip between triangles that share an edge: `wanted` where the device can do it.
+    enum class Robust { no, wanted, required } robust = Robust::no;
     bool operator==(const BuildSettings&) const = default;
 };
 
@@ -75,6 +76,8 @@ struct BuildSettings {
 class Device {
 public:
     virtual ~Device() = default;
+    /// Whether it can do what BuildSettings::robust asks for.
+    virtual bool has_robust_rays() const { return false; }
     virtual std::string name() const = 0;  ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
     /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image,
     /// copied.

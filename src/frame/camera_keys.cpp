@@ -210,10 +210,16 @@ void set_lens(CameraState& camera, const BoundShot& shot, double time_s) {
     camera.lens_radius = 0.5 * focal_m / evaluate(*spec.f_stop, time_s);
 }
 
+glm::dvec3 forward_of(const CameraState& camera) { return camera.rotation * glm::dvec3(0, 0, -1); }
+
+/// Where the plane that rays start on crosses the view axis.
+glm::dvec3 start_of(const CameraState& camera) { return camera.position + camera.start_m * forward_of(camera); }
+
+/// As kernels interpolate it.
 CameraState between(const CameraState& a, const CameraState& b, double u) {
     CameraState c = a;
-    c.position = glm::mix(a.position, b.position, u);
     c.rotation = slerp_shorter(a.rotation, b.rotation, u);
+    c.position = glm::mix(start_of(a), start_of(b), u) - c.start_m * forward_of(c);
     c.tan_half_width = std::lerp(a.tan_half_width, b.tan_half_width, u);
     c.tan_half_height = std::lerp(a.tan_half_height, b.tan_half_height, u);
     c.lens_radius = std::lerp(a.lens_radius, b.lens_radius, u);
@@ -221,10 +227,19 @@ CameraState between(const CameraState& a, const CameraState& b, double u) {
     return c;
 }
 
+/// What a displacement of a camera counts for. Along the axis it only makes the picture grow about its middle; where rays start
+/// far ahead of a camera that turns, that is most of it.
+double shown_motion(const CameraState& camera, const glm::dvec3& moved) {
+    if (camera.start_m == 0) return glm::length(moved);
+    const glm::dvec3 forward = forward_of(camera);
+    const double along = glm::dot(moved, forward);
+    return glm::length(moved - along * forward) + std::abs(along) * std::hypot(camera.tan_half_width, camera.tan_half_height);
+}
+
 /// How far the image of the subject moves between two cameras, in pixels: turned, displaced and zoomed.
 double pixels_between(const CameraState& a, const CameraState& b, int image_height) {
     const double half_height = 0.5 * image_height;
-    const double moved = glm::distance(a.position, b.position);
+    const double moved = shown_motion(b, a.position - b.position);
     const double zoomed = std::abs(a.tan_half_height / b.tan_half_height - 1) * half_height;
     if (a.orthographic) return moved * half_height / b.tan_half_height + zoomed + angle_between(a.rotation, b.rotation) * half_height;
     const double corner = 1 + b.tan_half_width * b.tan_half_width + b.tan_half_height * b.tan_half_height;
@@ -236,14 +251,15 @@ double pixels_between(const CameraState& a, const CameraState& b, int image_heig
 
 /// Error of evenly spaced states at a quarter, the half and three quarters of every step, where the fit looks at it, and
 /// where tracks have keys: a path that has a corner there strays farthest in it.
-/// @param corners  in (0, 1)
-double worst_error_px(const BoundShot& shot, const std::vector<CameraState>& states, const std::vector<double>& corners, double open_s, double close_s) {
+/// @param corners  in (0, 1)  @param at  the true camera at a part of the shutter
+template <class At>
+double worst_error_px(const std::vector<CameraState>& states, const std::vector<double>& corners, int image_height, const At& at) {
     double worst = 0;
     const auto look = [&](double u) {
         const double position = u * static_cast<double>(states.size() - 1);
         const std::size_t from = std::min(static_cast<std::size_t>(position), states.size() - 2);
         const CameraState is = between(states[from], states[from + 1], position - static_cast<double>(from));
-        worst = std::max(worst, pixels_between(is, camera_at(shot, std::lerp(open_s, close_s, u)), shot.shot().image.height));
+        worst = std::max(worst, pixels_between(is, at(u), image_height));
     };
     const std::size_t checks = 4 * (states.size() - 1);
     for (std::size_t i = 0; i < checks; ++i)
@@ -293,11 +309,12 @@ std::vector<double> camera_key_times(const BoundShot& shot, double open_s, doubl
 
 template <class T>
 kernels::CameraKeyOf<T> to_key(const CameraState& camera, const RenderSpace& space) {
-    const glm::vec<3, T> p(space.from_world(camera.position));
+    const glm::vec<3, T> p(space.from_world(start_of(camera)));
     const glm::qua<T> q(camera.rotation);
     const double film_unit = camera.orthographic ? space.unit_m : 1;  // an orthographic picture is as wide as what it shows
     return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, static_cast<T>(camera.tan_half_width / film_unit), static_cast<T>(camera.tan_half_height / film_unit),
-            static_cast<T>(camera.lens_radius / space.unit_m), static_cast<T>(camera.focus_distance / space.unit_m)};
+            static_cast<T>(camera.lens_radius / space.unit_m), static_cast<T>((camera.focus_distance - camera.start_m) / space.unit_m),
+            static_cast<T>(camera.start_m / space.unit_m)};
 }
 template kernels::CameraKeyOf<float> to_key(const CameraState&, const RenderSpace&);
 template kernels::CameraKeyOf<double> to_key(const CameraState&, const RenderSpace&);
@@ -311,9 +328,14 @@ CameraState camera_at(const BoundShot& shot, double time_s) {
     return camera;
 }
 
-CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space) {
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space, double start_m) {
     CameraFit fit;
-    std::vector<CameraState> states{camera_at(shot, open_s)};
+    const auto at = [&](double u) {
+        CameraState camera = camera_at(shot, open_s + u * (close_s - open_s));
+        camera.start_m = start_m;
+        return camera;
+    };
+    std::vector<CameraState> states{at(0)};
     if (close_s > open_s) {
         const std::vector<double> keys = camera_key_times(shot, open_s, close_s);
         const double tolerance = kMotionMargin * shot.shot().render.motion_tolerance_px;
@@ -321,12 +343,12 @@ CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const
         int at_least = static_cast<int>(std::min<std::size_t>(keys.size() + 1, kMostSegments));
         for (;; at_least = 2 * static_cast<int>(states.size() - 1)) {
             states = fit_keys(
-                base, at_least, kMostSegments, [&](double u) { return camera_at(shot, open_s + u * (close_s - open_s)); }, std::equal_to<>(),
+                base, at_least, kMostSegments, at, std::equal_to<>(),
                 [&](const CameraState& a, const CameraState& b, double u, const CameraState& wanted) {
                     return angle_between(a.rotation, wanted.rotation) + angle_between(wanted.rotation, b.rotation) <= kWidestStep &&
                            pixels_between(between(a, b, u), wanted, height) <= tolerance;
                 });
-            fit.error_px = states.size() > 1 ? worst_error_px(shot, states, keys, open_s, close_s) : 0;
+            fit.error_px = states.size() > 1 ? worst_error_px(states, keys, height, at) : 0;
             if (fit.error_px <= tolerance || 2 * static_cast<int>(states.size() - 1) > kMostSegments) break;
         }
         for (const double u : keys) fit.corners_s.push_back(std::lerp(open_s, close_s, u));

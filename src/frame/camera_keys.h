@@ -21,6 +21,7 @@ struct CameraState {
     double tan_half_width = 1, tan_half_height = 1;  ///< as in kernels::CameraKey
     double lens_radius = 0, focus_distance = 1;      ///< metres
     double subject_distance = 1;  ///< how far away what it looks at is, roughly: the scale for "precise enough"
+    double start_m = 0;           ///< of rays, as in kernels::CameraKey (camera_start)
     bool operator==(const CameraState&) const = default;
 };
 
@@ -39,7 +40,8 @@ struct CameraFit {
 
 /// Keys over a part of the shutter: one when the camera is still, else as many as the motion tolerance and 10 degrees a
 /// step ask for, and no more than 129: then the error is above the tolerance.
-CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space);
+/// @param start_m  CameraState::start_m of all keys
+CameraFit fit_camera(const BoundShot& shot, double open_s, double close_s, const RenderSpace& space, double start_m = 0);
 
 /// The parts of the camera that do not change within a part of the shutter; its clip planes are those of `time_s`.
 kernels::Camera make_camera(const BoundShot& shot, double time_s);

@@ -40,7 +40,7 @@ kernels::Light to_float(const ExactLight& exact) {
     light.outer_rad = static_cast<float>(exact.outer_rad);
     light.range = static_cast<float>(exact.range);
     light.radius = static_cast<float>(exact.radius);
-    light.cos_angular_radius = static_cast<float>(exact.cos_angular_radius);
+    light.one_minus_cos = static_cast<float>(exact.one_minus_cos);
     return light;
 }
 
@@ -85,6 +85,15 @@ void set_rectangle(ExactLight& light, const glm::dvec3& direction, const glm::dv
     light.axis_v = to_vec(0.5 * size_m.y * axes.up);
 }
 
+/// 1 - cos of a sun's angular radius; 0, a parallel beam, where it is narrower than what the directions of rays, which are
+/// floats, tell apart.
+double sun_one_minus_cos(double radius_rad) {
+    constexpr double kNarrowest_rad = 0x1p-23;
+    if (radius_rad < kNarrowest_rad) return 0;
+    const double half = std::sin(0.5 * radius_rad);
+    return 2 * half * half;
+}
+
 /// Relative to `origin`, metres.
 ExactLight light_at(const BoundShot& shot, const LightSpec& spec, double time_s, const glm::dvec3& origin) {
     ExactLight light{};
@@ -95,7 +104,7 @@ ExactLight light_at(const BoundShot& shot, const LightSpec& spec, double time_s,
     light.falloff = static_cast<kernels::SpotFalloff>(spec.falloff);
     light.direction = to_vec(direction);
     if (spec.kind == LightKind::directional) {
-        light.cos_angular_radius = std::cos(0.5 * evaluate(spec.angular_diameter_rad, time_s));
+        light.one_minus_cos = sun_one_minus_cos(0.5 * evaluate(spec.angular_diameter_rad, time_s));
         return light;
     }
     light.position = to_vec(position - origin);
@@ -184,19 +193,17 @@ double deviation(const kernels::Light& a, const kernels::Light& b, double u, con
                      off_by(a.cos_inner, b.cos_inner, wanted.cos_inner, 1), off_by(a.cos_outer, b.cos_outer, wanted.cos_outer, 1),
                      off_by(a.inner_rad, b.inner_rad, wanted.inner_rad, 1), off_by(a.outer_rad, b.outer_rad, wanted.outer_rad, 1),
                      off_by(a.radius, b.radius, wanted.radius, std::max(a.radius, b.radius)), off_by(a.range, b.range, wanted.range, std::max(a.range, b.range)),
-                     // Of the solid angle: 2 pi (1 - cos). A cosine near 1 has only 24 bits.
-                     off_by(a.cos_angular_radius, b.cos_angular_radius, wanted.cos_angular_radius,
-                            std::max(1.0 - std::min(a.cos_angular_radius, b.cos_angular_radius), 1e-4))});
+                     off_by(a.one_minus_cos, b.one_minus_cos, wanted.one_minus_cos, std::max(a.one_minus_cos, b.one_minus_cos))});  // of the solid angle
 }
 
 /// A light that has a surface at one key has one at all, however small: the kernels choose how to sample it once.
 void keep_surface(std::vector<kernels::Light>& keys) {
     constexpr float kSmallest = 1e-3f;  // of the largest
-    float radius = 0, cosine = 1;
-    for (const kernels::Light& key : keys) radius = std::max(radius, key.radius), cosine = std::min(cosine, key.cos_angular_radius);
+    float radius = 0, one_minus_cos = 0;
+    for (const kernels::Light& key : keys) radius = std::max(radius, key.radius), one_minus_cos = std::max(one_minus_cos, key.one_minus_cos);
     for (kernels::Light& key : keys) {
         key.radius = std::max(key.radius, kSmallest * radius);
-        if (cosine < 1) key.cos_angular_radius = std::min(key.cos_angular_radius, 1 - std::max(kSmallest * (1 - cosine), 0x1p-24f));
+        key.one_minus_cos = std::max(key.one_minus_cos, kSmallest * one_minus_cos);
     }
 }
 

@@ -11,6 +11,8 @@
 #include "frame/problem.h"
 #include "frame/references.h"
 #include "frame/seen_distance.h"
+#include "frame/snapshot.h"
+#include "frame/thin_shells.h"
 
 namespace kadr {
 namespace {
@@ -29,7 +31,15 @@ struct View {
     CameraState camera;
     double time_s = 0, pixel_rad = 0;  ///< of an orthographic picture 0
     double pixel_m = 0;                ///< at the subject
+    double ahead_m = 0;                ///< how far away from where rays start it is
 };
+
+/// Only lenses so long that directions do not suffice are worth the making of a frame.
+double start_of_rays_m(const BoundShot& shot, int frame, const View& view) {
+    if (view.camera.orthographic || kFloat <= kEnough_px * view.pixel_rad) return 0;
+    const SceneSnapshot snapshot = make_snapshots(shot, shot.sequence().frame(frame)).front();
+    return snapshot.camera_keys.front().start * snapshot.unit_m;
+}
 
 std::vector<View> views_of(const BoundShot& shot) {
     const std::vector<int>& frames = shot.timing().frames;
@@ -42,6 +52,7 @@ std::vector<View> views_of(const BoundShot& shot) {
         const double pixel = 2 * view.camera.tan_half_height / shot.shot().image.height;
         view.pixel_rad = view.camera.orthographic ? 0 : pixel;
         view.pixel_m = view.camera.orthographic ? pixel : pixel * view.camera.subject_distance;
+        view.ahead_m = std::max(view.camera.subject_distance - start_of_rays_m(shot, frames[at], view), 0.0);
         views.push_back(view);
     }
     return views;
@@ -56,6 +67,7 @@ public:
         check_distance();
         check_large_movers();
         check_meshes();
+        check_shells();
         check_lights();
         return std::move(found_);
     }
@@ -64,14 +76,12 @@ private:
     const SourceLocation& at_camera() const { return shot_.shot().camera.where; }
 
     void check_long_lens() {
-        const auto narrowest = std::min_element(views_.begin(), views_.end(), [](const View& a, const View& b) {
-            return (a.pixel_rad > 0 ? a.pixel_rad : 1) < (b.pixel_rad > 0 ? b.pixel_rad : 1);
-        });
-        const double off_px = narrowest->pixel_rad > 0 ? kFloat / narrowest->pixel_rad : 0;
-        if (off_px <= kEnough_px) return;
-        found_.push_back(warning_at(at_camera(), fmt::format("a pixel of the camera is {:.2g} rad wide at {} s, and the directions of rays are off by {:.2g} of it", narrowest->pixel_rad,
-                                                             format_number(narrowest->time_s), off_px),
-                                    "fine lines and shadows may flicker; a camera that stands nearer with a shorter lens, or fewer pixels, is safe"));
+        const auto off_px = [](const View& view) { return view.pixel_rad > 0 ? view.ahead_m * kFloat / view.pixel_m : 0; };
+        const View& worst = *std::max_element(views_.begin(), views_.end(), [&](const View& a, const View& b) { return off_px(a) < off_px(b); });
+        if (off_px(worst) <= kEnough_px) return;
+        found_.push_back(warning_at(at_camera(), fmt::format("a pixel of the camera is {:.2g} rad wide at {} s, and rays, which start {:.3g} m before what it looks at, are off by {:.2g} of it",
+                                                             worst.pixel_rad, format_number(worst.time_s), worst.ahead_m, off_px(worst)),
+                                    "fine lines and shadows may flicker; hide what is in view far before the subject, or take a camera that stands nearer with a shorter lens, or fewer pixels"));
     }
 
     void check_distance() {
@@ -119,6 +129,14 @@ private:
                                         "move the vertices to the origin and the node to where they were"));
             return;
         }
+    }
+
+    void check_shells() {
+        const std::optional<ThinShell> shell = find_thin_shell(shot_, views_.front().time_s);
+        if (!shell) return;
+        const std::string what = shell->inner_node < 0 ? fmt::format("node '{}' is", name_of(shell->node)) : fmt::format("nodes '{}' and '{}' are a shell", name_of(shell->node), name_of(shell->inner_node));
+        found_.push_back(warning_at(where_of(shell->node), fmt::format("{} {:.3g} m thick and {:.3g} m large: rays that leave one side may start beyond the other", what, shell->thickness_m, shell->size_m),
+                                    fmt::format("make it thicker than {:.0e} of its size, or leave one side out", kThinnestShell)));
     }
 
     void check_lights() {

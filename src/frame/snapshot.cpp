@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
+#include "frame/camera_start.h"
 #include "frame/deform.h"
 #include "frame/environment_at.h"
 #include "frame/key_grid.h"
@@ -197,7 +198,7 @@ PreviousPlaces places_before(const BoundShot& shot, const FrameTime& frame, cons
         places.space_from_geometry.push_back(snapshot.space().from_world(world_from_node * bindings.copied_from_geometry(shot.scene(), instance)));
     }
     places.deformed = deformed_positions(shot, snapshot, time_s);
-    places.camera = fit_camera(shot, time_s, time_s, snapshot.space()).keys.front();
+    places.camera = fit_camera(shot, time_s, time_s, snapshot.space(), snapshot.camera_keys.front().start * snapshot.unit_m).keys.front();
     return places;
 }
 
@@ -238,6 +239,7 @@ private:
         if (const double bent_px = add_bending(inside, snapshot); may_split && bent_px > kDeformationShare * enough_px)
             return split_at(middle(part), part, depth);
         add_rest(inside, snapshot);
+        start_ahead(inside, snapshot);
         snapshots_.push_back(std::move(snapshot));
     }
 
@@ -265,6 +267,16 @@ private:
         snapshot.camera = make_camera(shot_, 0.5 * (inside.open_s + inside.close_s));
         snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
         return camera.corners_s;
+    }
+
+    /// Gives the rays of a long lens a plane to start on. Keys are then interpolated on it, and may have to be more.
+    void start_ahead(const Part& inside, SceneSnapshot& snapshot) const {
+        const double start_m = camera_start_m(shot_, inside.open_s, inside.close_s, snapshot);
+        if (start_m == 0) return;
+        CameraFit camera = fit_camera(shot_, inside.open_s, inside.close_s, space_, start_m);
+        snapshot.camera_keys = std::move(camera.keys);
+        snapshot.camera_error_px = camera.error_px;
+        snapshot.camera.key_count = static_cast<int>(snapshot.camera_keys.size());
     }
 
     /// @return what the vertices of bending meshes miss; max_error_px then counts their places and vertices together

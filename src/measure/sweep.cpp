@@ -40,7 +40,7 @@ public:
         if (axis == "denoise") other("denoise", render_.denoise == DenoiserKind::none ? "oidn" : "none");
         if (axis == "texture") texture();
         if (axis == "build") build();
-        if (axis == "robust") other("robust", render_.robust ? "false" : "true");
+        if (axis == "robust") other("robust", render_.robust.value_or(false) ? "false" : "true");
     }
     Sweep take() { return std::move(sweep_); }
 

@@ -57,7 +57,7 @@ std::optional<Image> read_environment(const EnvironmentSpec& environment) {
 
 void load_device(Device& device, const LoadedShot& shot) {
     const std::optional<Image> environment = read_environment(shot.shot().environment);
-    device.load(shot.scene(), environment ? &*environment : nullptr, {shot.shot().render.build, shot.shot().render.robust});
+    device.load(shot.scene(), environment ? &*environment : nullptr, shot.build_settings());
 }
 
 }  // namespace kadr

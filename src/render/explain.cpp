@@ -29,6 +29,14 @@ void add_kernels(const LoadedShot& loaded, const std::vector<SceneSnapshot>& par
     }
 }
 
+std::string robust_text(const LoadedShot& loaded, const Device& device) {
+    const std::optional<bool> asked = loaded.shot().render.robust;
+    if (asked) return *asked ? "yes, as the shot says" : "no, as the shot says";
+    const std::optional<Slipping> slipping = loaded.slipping();
+    if (slipping && !device.has_robust_rays()) return "no, as this device has none: " + slipping->text();
+    return slipping ? "yes: " + slipping->text() : "no: few would slip between triangles";
+}
+
 }  // namespace
 
 Explanation explain_shot(const ExplainOptions& options) {
@@ -51,6 +59,7 @@ Explanation explain_shot(const ExplainOptions& options) {
     explanation.pixel_samples = static_cast<std::uint64_t>(shot.image.width) * static_cast<std::uint64_t>(shot.image.height) * static_cast<std::uint64_t>(shot.render.samples);
     explanation.device = choice.device->name(), explanation.device_why = choice.why;
     explanation.integrator = shot.render.integrator == Integrator::path ? "path" : "direct";
+    explanation.robust = robust_text(loaded, *choice.device);
     explanation.needs = requirements_of(loaded.bound());
     explanation.left_out = loaded.left_out();
     for (const SceneFile& file : loaded.scene().files) explanation.extensions.push_back({file.id, file.extensions, file.ignored_extensions});

@@ -40,6 +40,7 @@ struct Explanation {
     std::vector<Unread> left_out;
     std::vector<FileExtensions> extensions;
     std::vector<KernelUse> kernels;
+    std::string robust;               ///< whether rays are robust, and why: "no; few would slip between triangles"
     MemoryForecast memory;
     std::uint64_t pixel_samples = 0;  ///< of a frame, at most
     std::optional<FrameCost> cost;    ///< where it was asked for

@@ -50,6 +50,7 @@ public:
     std::string names() const;  ///< of all devices
     std::string why() const;    ///< they were chosen
     std::size_t size() const { return workers_.size(); }
+    bool has_robust_rays() const { return workers_.front()->choice.device->has_robust_rays(); }  ///< all devices are of a kind
     double load_s() const;  ///< that loading the scene took, summed over the devices
 
 private:

@@ -81,7 +81,7 @@ void add_settings(Metadata& metadata, const RenderSpec& render) {
     metadata["clamp_direct"] = limit_of(render.clamp_direct);
     metadata["clamp_indirect"] = limit_of(render.clamp_indirect);
     metadata["build"] = word_of("render.build", render.build);
-    metadata["robust"] = render.robust ? "yes" : "no";
+    metadata["robust"] = render.robust ? (*render.robust ? "yes" : "no") : "auto";
     metadata["texture_limit_px"] = render.texture_limit_px > 0 ? std::to_string(render.texture_limit_px) : "none";
     const Denoiser* denoiser = denoiser_of(render);
     metadata["denoise"] = word_of("render.denoise", render.denoise) + (denoiser ? " " + denoiser->version() : "");

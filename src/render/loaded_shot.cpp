@@ -46,6 +46,14 @@ LoadedShot::LoadedShot(Shot shot, const LoadOptions& options, Reading reading)
       scene_(reading == Reading::needed ? load_needed(shot_, with_limits(options, shot_.render), left_out_) : load_everything(shot_, with_limits(options, shot_.render))),
       bound_(shot_, scene_) {}
 
+std::optional<Slipping> LoadedShot::slipping() const { return shot_.render.robust ? std::nullopt : find_slipping(bound_); }
+
+BuildSettings LoadedShot::build_settings() const {
+    using Robust = BuildSettings::Robust;
+    if (shot_.render.robust) return {shot_.render.build, *shot_.render.robust ? Robust::required : Robust::no};
+    return {shot_.render.build, slipping() ? Robust::wanted : Robust::no};
+}
+
 std::vector<Diagnostic> LoadedShot::warnings() const {
     std::vector<Diagnostic> all = shot_.warnings;
     all.insert(all.end(), scene_.warnings.begin(), scene_.warnings.end());

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "frame/frame_state.h"
+#include "device/device.h"
 #include "frame/shot_needs.h"
+#include "frame/slipping.h"
 #include "scene/scene.h"
 #include "shot/shot.h"
 
@@ -28,6 +30,10 @@ public:
     const std::vector<Unread>& left_out() const { return left_out_; }
     /// Those of the shot, the scenes, the binding and the numbers' precision, in this order.
     std::vector<Diagnostic> warnings() const;
+
+    /// Where too many rays would slip between triangles; looked for only where the shot leaves `render.robust` to us.
+    std::optional<Slipping> slipping() const;
+    BuildSettings build_settings() const;
 
 private:
     Shot shot_;

@@ -125,6 +125,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     farm_.emplace(*loaded_, std::move(devices_), std::move(settings));
     summary_.device = farm_->names();
     summary_.device_why = farm_->why();
+    if (const std::optional<Slipping> slipping = loaded_->slipping(); slipping && farm_->has_robust_rays()) summary_.device_why += "; robust rays: " + slipping->text();
     summary_.times.load = total_.seconds();
 }
 

@@ -136,7 +136,7 @@ RenderSpec read_render(const Section& shot) {
     if (denoise) render.denoise_where = location_of(denoise.node->place);
     assign(render.denoise, read_choice<DenoiserKind>(denoise));
     assign(render.build, read_choice<BuildQuality>(section["build"]));
-    assign(render.robust, read_boolean(section["robust"]));
+    if (const Field robust = section["robust"]; robust && !is_word(robust, "auto")) render.robust = read_boolean(robust);
     read_texture_limit(section["texture_limit"], render);
     read_seed(section, render);
     assign(render.cull_backfaces, read_boolean(section["cull_backfaces"]));

@@ -187,7 +187,7 @@ struct RenderSpec {
     DenoiserKind denoise = DenoiserKind::none;
     SourceLocation denoise_where;
     BuildQuality build = BuildQuality::medium;
-    bool robust = false;          ///< rays cannot slip between triangles that share an edge
+    std::optional<bool> robust;   ///< rays cannot slip between triangles that share an edge; absent: where they would too often (slipping.h)
     int texture_limit_px = 0;     ///< larger textures are halved until they fit; 0: as they are
     std::string quality;          ///< the step of the ladder (quality.h) that filled in what was not given; empty: none
     std::uint32_t seed = 0;

@@ -87,6 +87,11 @@ private:
             item["extensions"]["KHR_materials_ior"]["ior"] = *material.ior;
             require("KHR_materials_ior");
         }
+        if (material.emission > 0) {
+            item["emissiveFactor"] = {1, 1, 1};
+            item["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = material.emission;
+            require("KHR_materials_emissive_strength");
+        }
         json_["materials"].push_back(std::move(item));
         return static_cast<int>(json_["materials"].size()) - 1;
     }

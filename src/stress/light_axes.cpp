@@ -62,6 +62,73 @@ void set_contrast(Stage& stage, double ratio) {
     stage.sky_sun = ratio * stage.sky;
 }
 
+constexpr double kCeiling = 5;  // of lamps that hang over the floor
+
+/// A sheet at a height that hides a lamp from what is below, or from what is above.
+void add_sheet(Stage& stage, double height) {
+    Object sheet;
+    sheet.name = "Sheet";
+    sheet.mesh = square();
+    sheet.scale = {1.5, 1, 1.5};
+    sheet.translate.y = height;
+    stage.objects.push_back(std::move(sheet));
+}
+
+void hang(Lamp& lamp) {
+    lamp.position = {0, kCeiling, 0};
+    lamp.target = {0, 0, 0};
+}
+
+void hang_panel(Stage& stage) {
+    hang(stage.key);
+    stage.key.kind = LightKind::area;
+}
+
+/// Two triangles that emit take the lamp's place.
+void hang_mesh(Stage& stage) {
+    Object lamp;
+    lamp.name = "Lamp";
+    lamp.mesh = square();
+    lamp.translate.y = kCeiling;
+    lamp.scale = glm::dvec3(0.5);
+    lamp.material.emission = stage.key.strength;
+    stage.key.strength = 0;
+    stage.objects.push_back(std::move(lamp));
+}
+
+void set_cover_of_point(Stage& stage, double part) {
+    hang(stage.key);
+    add_sheet(stage, kCeiling - part * kCeiling);
+}
+
+void set_cover_of_ball(Stage& stage, double part) {
+    hang(stage.key);
+    stage.key.radius_m = 0.25;
+    add_sheet(stage, kCeiling - stage.key.radius_m - part * kCeiling);
+}
+
+void set_cover_of_panel(Stage& stage, double part) {
+    hang_panel(stage);
+    add_sheet(stage, kCeiling - part * kCeiling);
+}
+
+void set_cover_of_mesh(Stage& stage, double part) {
+    hang_mesh(stage);
+    add_sheet(stage, kCeiling - part * kCeiling);
+}
+
+void set_back_of_panel(Stage& stage, double part) {
+    hang_panel(stage);
+    add_sheet(stage, kCeiling + part * kCeiling);
+}
+
+void set_back_of_mesh(Stage& stage, double part) {
+    hang_mesh(stage);
+    add_sheet(stage, kCeiling + part * kCeiling);
+}
+
+std::vector<double> sheets() { return {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1}; }
+
 }  // namespace
 
 std::vector<Axis> light_axes() {
@@ -69,7 +136,7 @@ std::vector<Axis> light_axes() {
         {.name = "elevation", .unit = "rad", .meaning = "of a sharp sun above the floor",
          .values = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.785, 1.5707963267948966}, .quick = {1e-6, 1e-3, 0.1, 0.785, 1.5707963267948966}, .ordinary = 0.785, .apply = set_elevation},
         {.name = "sun_diameter", .unit = "deg", .meaning = "apparent size of a sun",
-         .values = {0, 1e-6, 1e-3, 0.53, 10, 90, 180}, .quick = {0, 1e-6, 0.53, 180}, .ordinary = 0.53, .apply = set_sun_diameter},
+         .values = {0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.53, 10, 90, 180}, .quick = {0, 1e-6, 1e-3, 0.53, 180}, .ordinary = 0.53, .apply = set_sun_diameter},
         {.name = "sun_contrast", .unit = "", .meaning = "radiance of one pixel of an environment image over that of all others",
          .values = {1, 1e2, 1e4, 1e6}, .quick = {1, 1e2, 1e6}, .ordinary = 1e2, .apply = set_contrast},
         {.name = "range", .unit = "m", .meaning = "at which a lamp ends",
@@ -78,6 +145,18 @@ std::vector<Axis> light_axes() {
          .values = {0, 1e-9, 1e-6, 1e-3, 1, 20}, .quick = {0, 1e-6, 1, 20}, .ordinary = 1, .apply = set_spot_edge},
         {.name = "area_side", .unit = "m", .meaning = "of a square lamp that hangs over the scene",
          .values = {1e-9, 1e-6, 1e-3, 1, 10, 1e3, 1e6}, .quick = {1e-9, 1, 1e6}, .ordinary = 1, .apply = set_area_side},
+        {.name = "cover_point", .unit = "", .meaning = "from a lamp without size to a sheet before it, as a part of its height over the floor",
+         .values = sheets(), .quick = {1e-6, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-6, .apply = set_cover_of_point},
+        {.name = "cover_ball", .unit = "", .meaning = "the same of a lamp with a radius",
+         .values = sheets(), .quick = {1e-6, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-6, .apply = set_cover_of_ball},
+        {.name = "cover_panel", .unit = "", .meaning = "the same of a square lamp",
+         .values = sheets(), .quick = {1e-6, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-6, .apply = set_cover_of_panel},
+        {.name = "cover_mesh", .unit = "", .meaning = "the same of two triangles that emit",
+         .values = sheets(), .quick = {1e-5, 1e-1}, .ordinary = 1e-1, .safe_low = 1e-5, .apply = set_cover_of_mesh},
+        {.name = "back_panel", .unit = "", .meaning = "from a square lamp to a sheet behind it, as a part of its height over the floor",
+         .values = sheets(), .quick = {1e-7, 1e-1}, .ordinary = 1e-1, .apply = set_back_of_panel},
+        {.name = "back_mesh", .unit = "", .meaning = "the same of two triangles that emit",
+         .values = sheets(), .quick = {1e-7, 1e-1}, .ordinary = 1e-1, .apply = set_back_of_mesh},
         {.name = "intensity", .unit = "", .meaning = "factor on everything that shines; the exposure takes it back",
          .values = {1e-30, 1e-20, 1e-10, 1e-5, 1, 1e5, 1e10, 1e20, 1e30}, .quick = {1e-30, 1e-5, 1, 1e5, 1e30}, .ordinary = 1, .same_picture = true, .safe_low = 1e-20, .apply = set_intensity},
     };

@@ -61,9 +61,9 @@ std::vector<Axis> place_axes() {
         {.name = "size_ratio", .unit = "", .meaning = "a terrain that is larger than what stands on it; 1e7 is a screw of 1 mm on 10 km",
          .values = {1, 10, 1e3, 1e5, 1e7}, .quick = {1, 1e3, 1e7}, .ordinary = 1, .apply = set_size_ratio},
         {.name = "telephoto", .unit = "", .meaning = "distance of the camera over the size of its subject, which fills the picture",
-         .values = {2, 10, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, .quick = {2, 10, 1e6}, .ordinary = 2, .safe_high = 10, .apply = set_telephoto},
+         .values = {2, 10, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, .quick = {2, 10, 1e6}, .ordinary = 2, .apply = set_telephoto},
         {.name = "authored_telephoto", .unit = "", .meaning = "the same by a camera of the glTF file, which does not say what it looks at",
-         .values = {2, 10, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, .quick = {2, 10, 1e6}, .ordinary = 2, .refusals = {{1e7, "/perspective/yfov is"}}, .safe_high = 10, .apply = set_authored_telephoto},
+         .values = {2, 10, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, .quick = {2, 10, 1e6}, .ordinary = 2, .refusals = {{1e7, "/perspective/yfov is"}}, .apply = set_authored_telephoto},
         {.name = "field_of_view", .unit = "deg", .meaning = "vertical angle of the picture; the camera stays, above a floor of 20 km",
          .values = {1e-3, 0.01, 1, 30, 120, 170, 179, 179.9}, .quick = {1e-3, 30, 179, 179.9}, .ordinary = 30, .apply = set_field_of_view},
     };

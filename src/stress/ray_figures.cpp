@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -54,6 +55,10 @@ bool agree(const Members& members, const Value& value) {
 struct Eye {
     explicit Eye(const SceneSnapshot& snapshot) : key(snapshot.camera_keys.front()), orthographic(snapshot.camera.orthographic), height(snapshot.settings.height) {}
     double pixel_at(double distance_m) const { return 2.0 * key.tan_half_height / height * (orthographic ? 1.0 : distance_m); }
+    glm::dvec3 place() const {
+        const glm::dquat rotation(key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
+        return glm::dvec3(key.position.x, key.position.y, key.position.z) + rotation * glm::dvec3(0, 0, key.start);
+    }
     const kernels::CameraKey& key;
     bool orthographic;
     int height;
@@ -70,6 +75,7 @@ public:
         const std::vector<Bundle> truth = look_in_bundles(reference_, points_);
         for (std::size_t i = 0; i < points_.size(); ++i) compare_hit(seen[i], truth[i]);
         send_shadow_rays(seen, truth);
+        for (int light = 0; light < reference_.light_count(); ++light) send_light_rays(light, seen, truth);
         return figures_;
     }
 
@@ -87,8 +93,11 @@ private:
         if (seen.instance == truth[0].instance) note_position(seen, truth[0]);
     }
 
-    /// Surfaces in one place, as far as floats tell distances apart: which of them is in front, not even the file says.
-    static bool same_place(const SurfaceHit& a, const SurfaceHit& b) { return std::abs(a.distance_m - b.distance_m) <= 8 * 0x1p-23 * b.distance_m; }
+    /// Surfaces in one place, as far as floats tell distances from where the ray starts apart: which of them is in front, not
+    /// even the file says.
+    bool same_place(const SurfaceHit& seen, const SurfaceHit& truth) const {
+        return std::abs(glm::dot(to_glm(seen.position) - to_glm(truth.position), to_viewer(truth))) <= 8 * 0x1p-23 * seen.distance_m;
+    }
 
     /// Across the ray: along it, nothing moves in the picture.
     void note_position(const SurfaceHit& seen, const SurfaceHit& truth) {
@@ -103,7 +112,7 @@ private:
 
     glm::dvec3 to_viewer(const SurfaceHit& hit) const {
         if (eye_.orthographic) return to_glm(hit.normal);
-        const glm::dvec3 to_camera = glm::dvec3(eye_.key.position.x, eye_.key.position.y, eye_.key.position.z) - to_glm(hit.position);
+        const glm::dvec3 to_camera = eye_.place() - to_glm(hit.position);
         const double distance = glm::length(to_camera);
         return distance > 0 ? to_camera / distance : to_glm(hit.normal);
     }
@@ -139,6 +148,36 @@ private:
         }
     }
 
+    /// Random numbers of a point on a light, those of a bundle a little apart: what hides the light may end there.
+    static kernels::Vec3f point_on_light(std::size_t point, int number, int member) {
+        constexpr float kApart = 1e-3f;
+        const auto sampler = kernels::make_sampler<double>(static_cast<int>(point), 1, static_cast<unsigned>(number), 1u);
+        const kernels::Vec2<double> u = sampler.get_2d(0u);
+        const auto within = [](double x) { return std::clamp(static_cast<float>(x), 0.0f, kernels::kOneMinusEpsilon); };
+        return {within(u.x + kApart * kOffsets[member][0] / kApart_px), within(u.y + kApart * kOffsets[member][1] / kApart_px), within(sampler.get_1d(1u))};
+    }
+
+    void send_light_rays(int light, const std::vector<SurfaceHit>& seen, const std::vector<Bundle>& truth) {
+        std::vector<LightRay> rays, bundles;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const Bundle& hits = truth[i];
+            if (!seen[i].met() || !agree(hits, [](const SurfaceHit& hit) { return hit.instance; }) || seen[i].instance != hits[0].instance) continue;
+            for (int k = 0; k < counts_.directions; ++k) {
+                rays.push_back({seen[i], to_float(to_viewer(seen[i])), light, point_on_light(i, k, 0)});
+                for (int m = 0; m < kBundle; ++m) bundles.push_back({hits[static_cast<std::size_t>(m)], to_float(to_viewer(hits[static_cast<std::size_t>(m)])), light, point_on_light(i, k, m)});
+            }
+        }
+        const std::vector<LightSight> found = device_.towards_lights(rays, 0), exact = reference_.towards_lights(bundles, 0);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto first = exact.begin() + static_cast<std::ptrdiff_t>(i) * kBundle;
+            const bool clear = std::all_of(first, first + kBundle, [&](LightSight sight) { return sight == *first; });
+            if (!clear || *first == LightSight::not_towards || found[i] == LightSight::not_towards) continue;
+            ++figures_.light_rays;
+            if (found[i] == *first) continue;
+            ++(found[i] == LightSight::hidden ? figures_.false_shadows : figures_.leaks);
+        }
+    }
+
     Probe& device_;
     Probe& reference_;
     const SceneSnapshot& snapshot_;
@@ -153,7 +192,7 @@ private:
 RayFigures operator+(const RayFigures& a, const RayFigures& b) {
     return {a.camera_rays + b.camera_rays, a.holes + b.holes, a.wrong_surfaces + b.wrong_surfaces,
             std::max(a.position_error_px, b.position_error_px), std::max(a.position_error_ulp, b.position_error_ulp),
-            a.shadow_rays + b.shadow_rays, a.false_shadows + b.false_shadows, a.leaks + b.leaks};
+            a.shadow_rays + b.shadow_rays, a.light_rays + b.light_rays, a.false_shadows + b.false_shadows, a.leaks + b.leaks};
 }
 
 RayFigures compare_rays(Device& device, Device& reference, const SceneSnapshot& snapshot, const RayCounts& counts) {

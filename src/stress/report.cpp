@@ -97,9 +97,9 @@ std::string html_page(const std::vector<CellResult>& results) {
                        "th,td{padding:2px 8px;text-align:right;border:1px solid #ddd}th:first-child,td.note{text-align:left}\n"
                        "th.ok{background:#e2f3e2}th.bad{background:#f2a9a9}th.beyond{background:#f6e7c8}td.note{min-width:12em;max-width:46em;color:#555}th{vertical-align:top}\n"
                        "</style></head><body><h1>kadr stress</h1>\n";
-    page += fmt::format("<p>{} cells, {} not sound. {} camera rays and {} shadow rays against the reference in double: {} holes, {} wrong surfaces, {} false shadows, {} leaks. "
+    page += fmt::format("<p>{} cells, {} not sound. {} camera rays, {} shadow rays and {} rays to lights against the reference in double: {} holes, {} wrong surfaces, {} false shadows, {} leaks. "
                         "A cell is sound where its picture is within a step of eight bits of the reference on average, no ray contradicts it and no sample is lost.</p>\n",
-                        results.size(), bad, rays.camera_rays, rays.shadow_rays, rays.holes, rays.wrong_surfaces, rays.false_shadows, rays.leaks);
+                        results.size(), bad, rays.camera_rays, rays.shadow_rays, rays.light_rays, rays.holes, rays.wrong_surfaces, rays.false_shadows, rays.leaks);
     page += "<h2>Safe ranges</h2>\n" + html_ranges(results) + "<h2>Cells</h2>\n<table>\n" + html_head();
     for (const CellResult& result : results) page += html_row(result);
     return page + "</table></body></html>\n";
@@ -116,7 +116,7 @@ nlohmann::ordered_json object_of(const CellResult& result) {
     else
         for (const Column& column : columns())
             if (const std::optional<double> value = column.value(result)) json[column.name] = *value;
-    if (result.rays) json["camera_rays"] = result.rays->camera_rays, json["shadow_rays"] = result.rays->shadow_rays;
+    if (result.rays) json["camera_rays"] = result.rays->camera_rays, json["shadow_rays"] = result.rays->shadow_rays, json["light_rays"] = result.rays->light_rays;
     if (!result.warnings.empty()) json["warnings"] = result.warnings;
     json["seconds"] = result.seconds;
     return json;

@@ -15,6 +15,7 @@ namespace kadr::stress {
 struct Material {
     glm::dvec3 base_color{0.5};
     double metallic = 0, roughness = 1;
+    double emission = 0;        ///< radiance, of every colour
     std::optional<double> ior;  ///< by KHR_materials_ior, which the file then requires
 };
 

@@ -57,7 +57,7 @@ class Explain(ExplainTest):
                      r"  materials     dielectric +material 'material 0'\n", r"  lights        point +light 'key'\n",
                      r"  environment   colour +environment\.color\n",
                      r"leaves out\n  nothing: all that the files hold is used\n", r"glTF extensions\n  none\n",
-                     r"kernels\n  cpu \(Embree .*\): asked for by --device cpu\n  path with transforms: frames 0, 1, 2\n"):
+                     r"kernels\n  cpu \(Embree .*\): asked for by --device cpu\n  path with transforms: frames 0, 1, 2\n  robust rays: no: few would slip between triangles\n"):
             self.assertRegex(text, line)
 
     def test_json_has_the_same_facts(self):

@@ -133,7 +133,7 @@ class Usage(ProgramTest):
         self.assertEqual({key: said[key] for key in ("integrator", "bounces", "filter", "motion_tolerance_px", "clamp_direct", "clamp_indirect", "build", "robust",
                                                      "texture_limit_px", "denoise", "seed", "cull_backfaces", "shutter", "view", "fps")},
                          {"integrator": "path", "bounces": "2 (diffuse 2, glossy 2, transmission 2)", "filter": "blackman-harris 1.5 px",
-                          "motion_tolerance_px": "0.1", "clamp_direct": "none", "clamp_indirect": "none", "build": "medium", "robust": "no",
+                          "motion_tolerance_px": "0.1", "clamp_direct": "none", "clamp_indirect": "none", "build": "medium", "robust": "auto",
                           "texture_limit_px": "none", "denoise": "none", "seed": "0", "cull_backfaces": "no", "shutter": "0 f to 0.5 f",
                           "view": "srgb, 0 stops", "fps": "24"})
         self.assertNotIn("quality", said)

@@ -184,7 +184,7 @@ private:
         light.axis_u = {0.5f, 0, 0};
         light.axis_v = {0, 0, 0.5f};
         light.kind = kernels::LightKind::directional;
-        if (draw("wide sun")) light.cos_angular_radius = 0.99f;
+        if (draw("wide sun")) light.one_minus_cos = 0.01f;
         if (draw("point")) light.kind = kernels::LightKind::point;
         if (draw("spot")) {
             light.kind = kernels::LightKind::spot;

@@ -32,7 +32,7 @@ std::string flaws_of(Shot shot, const Scene& scene) {
     request.threads = 1;
     const DeviceChoice choice = make_device(request);
     const std::optional<Image> environment = read_environment(shot.environment);
-    choice.device->load(scene, environment ? &*environment : nullptr, {shot.render.build, shot.render.robust});
+    choice.device->load(scene, environment ? &*environment : nullptr, {shot.render.build, shot.render.robust.value_or(false) ? BuildSettings::Robust::required : BuildSettings::Robust::no});
     const Image image = FrameRenderer(*choice.device).render(bound, time, {}).image;
     ViewSpec view = view_at(shot.view, time.time_s());
     if (view.automatic) view.exposure_stops = metered_exposure(image);

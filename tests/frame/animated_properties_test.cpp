@@ -48,8 +48,8 @@ TEST(LightTracks, RangeAndAngularDiameterHaveKeys) {
     const SceneSnapshot snapshot = stage.snapshot();
     EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[0].first].range, 2);
     EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[0].first + snapshot.lights[0].count - 1].range, 4);
-    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first].cos_angular_radius, std::cos(0.1f));
-    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first + snapshot.lights[1].count - 1].cos_angular_radius, std::cos(0.2f));
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first].one_minus_cos, 2 * std::pow(std::sin(0.05f), 2));
+    EXPECT_FLOAT_EQ(snapshot.light_keys[snapshot.lights[1].first + snapshot.lights[1].count - 1].one_minus_cos, 2 * std::pow(std::sin(0.1f), 2));
     EXPECT_LE(snapshot.light_error, 1e-3);
     EXPECT_GT(snapshot.light_error, 0);  // the cosine bends
 }
@@ -74,8 +74,8 @@ TEST(LightTracks, SunsThatGrowFromAPointKeepASurface) {
     sun.angular_diameter_rad = track<double>({{0, 0}, {1, 0.4}});
     stage.shot.lights.push_back(sun);
     const SceneSnapshot snapshot = stage.snapshot();
-    EXPECT_LT(snapshot.light_keys[0].cos_angular_radius, 1);
-    EXPECT_GT(snapshot.light_keys[0].cos_angular_radius, 0.9999f);
+    EXPECT_GT(snapshot.light_keys[0].one_minus_cos, 0);
+    EXPECT_LT(snapshot.light_keys[0].one_minus_cos, 1e-4f);
 }
 
 TEST(LightTracks, VisibilitySplitsTheShutter) {

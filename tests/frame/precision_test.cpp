@@ -28,8 +28,8 @@ TEST(PrecisionWarnings, NoneForAnOrdinaryShot) {
 TEST(PrecisionWarnings, NamesTheCameraWhoseLensIsTooLong) {
     Stage stage;
     stage.shot.camera.focal_length_mm = Track<double>(10000);
-    // 36 mm over 1280 pixels, 10 m away: 2.8e-6 rad; 2^-24 of a radian is 0.021 of that.
-    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.8e-06 rad wide at 0 s, and the directions of rays are off by 0.021 of it")));
+    // 36 mm over 1280 pixels, 10 m: 2.8e-6 rad; 2^-24 of a radian is 0.021 of that.
+    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("a pixel of the camera is 2.8e-06 rad wide at 0 s, and rays, which start 5 m before what it looks at, are off by 0.021 of it")));
     stage.shot.camera.focal_length_mm = Track<double>(5000);
     EXPECT_THAT(warnings_of(stage), IsEmpty());
 }
@@ -57,6 +57,29 @@ TEST(PrecisionWarnings, NamesTheMeshWhoseFileRoundedIt) {
     stage.scene.geometries[0].centre = {4e6, 5e5, 0};
     stage.scene.geometries[0].scale = 10;
     EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("the vertices of node 'stage/Survey' lie 4.03e+06 from their origin, where the file's 32-bit numbers are precise to 0.24; the mesh is 20 large")));
+}
+
+TEST(PrecisionWarnings, NamesThePlateAndTheShellThatAreTooThin) {
+    Stage stage;
+    GeometryData& cube = stage.scene.geometries[0];
+    for (int corner = 0; corner < 8; ++corner) cube.positions.push_back({corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f});
+    cube.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6};  // the faces along z
+    const int plate = stage.add_node("Plate");
+    stage.node(plate).scale = {1, 1, 1e-7};
+    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("node 'stage/Plate' is 2e-07 m thick and 2 m large: rays that leave one side may start beyond the other")));
+    stage.node(plate).scale = {1, 1, 1e-4};
+    EXPECT_THAT(warnings_of(stage), IsEmpty());
+    stage.node(plate).scale = {1, 1, 1};
+    const int inner = stage.add_node("Inner");
+    stage.node(inner).scale = glm::dvec3(1 - 1e-6);
+    EXPECT_THAT(warnings_of(stage), ElementsAre(HasSubstr("nodes 'stage/Plate' and 'stage/Inner' are a shell 1e-06 m thick and 2 m large")));
+    stage.node(inner).scale = glm::dvec3(1);  // the same place: whichever is met
+    EXPECT_THAT(warnings_of(stage), IsEmpty());
+    // Uneven, but with one side.
+    stage.node(inner).translation = {0, 0, 7};
+    stage.node(inner).scale = {1, 1, 1e-8};
+    cube.indices = {0, 2, 1, 1, 2, 7};
+    EXPECT_THAT(warnings_of(stage), IsEmpty());
 }
 
 TEST(PrecisionWarnings, NamesTheLightThatIsTooFaint) {

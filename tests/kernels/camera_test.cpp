@@ -146,6 +146,43 @@ TEST(Camera, ProjectUndoesCameraRay) {
     }
 }
 
+/// A ray that starts ahead of the camera is a later part of the ray that starts at it.
+TEST(Camera, RaysMayStartAheadOfIt) {
+    Random random(29);
+    for (int i = 0; i < 2000; ++i) {
+        const bool orthographic = i % 3 == 0;
+        CameraKey from_camera[2] = {upright(0.9, 1.3), upright(0.8, 1.3)}, ahead[2];
+        const double axis[3] = {0.6, 0.0, 0.8};
+        for (int k = 0; k < 2; ++k) {
+            CameraKey& key = from_camera[k];
+            if (i % 2 == 0 || k == 0) set_rotation(key, axis, 0.3);
+            key.lens_radius = i % 5 == 0 ? 0.0f : 0.3f;
+            key.focus_distance = 9.0f + static_cast<float>(k);
+            key.position = {0.1f, -0.2f + static_cast<float>(k), 0.3f};
+            ahead[k] = key;
+            ahead[k].start = 6.0f;
+            ahead[k].focus_distance = key.focus_distance - 6.0f;
+            const Quaternion<float> q{key.rotation[0], key.rotation[1], key.rotation[2], key.rotation[3]};
+            ahead[k].position = key.position + rotate(q, Vec3f{0, 0, -6});
+        }
+        // Two keys of one rotation, or one.
+        const int count = i % 2 == 0 ? 2 : 1;
+        Camera camera{from_camera, count, orthographic, 0, 0.0f, 1e30f}, later{ahead, count, orthographic, 0, 0.0f, 1e30f};
+        const float time = random();
+        const Vec2f px{64.0f * random(), 48.0f * random()}, lens = random.pair();
+        const Ray a = ray(camera, 64, 48, px, time, lens), b = ray(later, 64, 48, px, time, lens);
+        ASSERT_LT(length(a.direction - b.direction), 1e-6f) << i;
+        const Vec3f between = b.origin - a.origin;
+        const Vec3f axis_of_view = rotate(camera_at(camera, time).rotation, Vec3f{0, 0, -1});
+        ASSERT_NEAR(dot(between, axis_of_view), 6.0f, 1e-5f) << i;
+        ASSERT_LT(length(between - a.direction * dot(between, a.direction)), 1e-5f) << i;  // roundings of coordinates of order 8
+        const Vec3f point = b.origin + b.direction * (0.5f + 20.0f * random());
+        const Vec2f seen = project(camera, 64, 48, point, time), seen_later = project(later, 64, 48, point, time);
+        ASSERT_NEAR(seen.x, seen_later.x, 1e-3f) << i;
+        ASSERT_NEAR(seen.y, seen_later.y, 1e-3f) << i;
+    }
+}
+
 struct NamedFilter {
     const char* name;
     FilterKind kind;

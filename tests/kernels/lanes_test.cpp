@@ -81,7 +81,7 @@ private:
                          : i < 4 ? LightKind::point
                          : i < 7 ? LightKind::spot
                                  : LightKind::area;
-                if (i == 1) l.cos_angular_radius = 0.99f;
+                if (i == 1) l.one_minus_cos = 0.01f;
                 if (i == 3 || i == 6) l.radius = 0.25f;
                 if (l.kind == LightKind::spot) l.falloff = static_cast<SpotFalloff>(i - 4);
             }

@@ -91,9 +91,9 @@ struct NamedLight {
 /// Lights that a ray can meet, with a place to look from.
 std::vector<NamedLight> solid_lights() {
     Light sun = make(LightKind::directional);
-    sun.cos_angular_radius = static_cast<float>(std::cos(0.2));
+    sun.one_minus_cos = static_cast<float>(1 - std::cos(0.2));
     Light small_sun = make(LightKind::directional);
-    small_sun.cos_angular_radius = static_cast<float>(std::cos(0.265 * M_PI / 180.0));
+    small_sun.one_minus_cos = static_cast<float>(1 - std::cos(0.265 * M_PI / 180.0));
     small_sun.direction = normalize(Vec3f{1, -2, 0.5f});
     Light bulb = make(LightKind::point, 0.5f);
     Light lamp = spot(SpotFalloff::gltf, 0.4, 0.9);
@@ -176,7 +176,7 @@ double irradiance(const Light& l, Vec3f p, Vec3f n, int side = 400) {
 TEST(SolidLights, IlluminateAsTheirUnitsSay) {
     Light sun = make(LightKind::directional);
     for (const double radius : {0.0046, 0.1, 1.0}) {
-        sun.cos_angular_radius = static_cast<float>(std::cos(radius));
+        sun.one_minus_cos = static_cast<float>(1 - std::cos(radius));
         EXPECT_NEAR(irradiance(sun, {0, 0, 0}, kUp), 2.0, 2e-4) << radius;  // E lux, whatever the size
     }
     for (const double d : {1.0, 3.0, 100.0}) {

@@ -287,10 +287,10 @@ TEST_F(RenderJobTest, AnUnwritableFolderIsKnownBeforeTheFirstRay) {
 
 TEST_F(RenderJobTest, TheDeviceIsToldHowStructuresAreBuilt) {
     run();
-    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::medium, false}));
+    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::medium, BuildSettings::Robust::no}));
     options_.overrides.set = {{"render.build", "high"}, {"render.robust", "true"}};
     run();
-    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::high, true}));
+    EXPECT_EQ(fake_device().build, (BuildSettings{BuildQuality::high, BuildSettings::Robust::required}));
 }
 
 TEST(LoadedShot, TexturesAreNoLargerThanTheShotAllows) {

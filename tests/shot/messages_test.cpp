@@ -472,7 +472,7 @@ shot.yaml:4:32: error: render.build is 'best'
 shot.yaml:4:46: error: render.robust is 1
     render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
                                                  ^
-  expected true or false
+  expected true or false or auto
 shot.yaml:4:64: error: render.texture_limit is 0
     render: { denoise: nlm, build: best, robust: 1, texture_limit: 0 }
                                                                    ^

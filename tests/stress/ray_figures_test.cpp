@@ -28,6 +28,7 @@ public:
     double shift_m = 0;          ///< of what camera rays meet
     int miss_every = 0;          ///< camera rays that pass through; 0: none
     int wrong_every = 0;         ///< shadow rays with the wrong answer; 0: none
+    int wrong_light_every = 0;   ///< rays to lights with the wrong answer; 0: none
 
 private:
     std::vector<SurfaceHit> look(std::span<const kernels::Vec2f> film_px, double time) override {
@@ -42,6 +43,14 @@ private:
         std::vector<char> answers = device_.probe()->occluded(rays, time);
         for (std::size_t i = 0; wrong_every > 0 && i < answers.size(); i += static_cast<std::size_t>(wrong_every)) answers[i] = !answers[i];
         return answers;
+    }
+
+    int light_count() const override { return device_.probe()->light_count(); }
+    std::vector<LightSight> towards_lights(std::span<const LightRay> rays, double time) override {
+        std::vector<LightSight> sights = device_.probe()->towards_lights(rays, time);
+        for (std::size_t i = 0; wrong_light_every > 0 && i < sights.size(); i += static_cast<std::size_t>(wrong_light_every))
+            if (sights[i] != LightSight::not_towards) sights[i] = sights[i] == LightSight::seen ? LightSight::hidden : LightSight::seen;
+        return sights;
     }
 
     Device& device_;
@@ -71,6 +80,7 @@ TEST_F(RayFiguresTest, NothingIsWrongWithTheReferenceItself) {
     EXPECT_EQ(f.position_error_px, 0);
     EXPECT_GT(f.camera_rays, 2000u);  // of 2304: the others are near edges
     EXPECT_GT(f.shadow_rays, 6000u);
+    EXPECT_GT(f.light_rays, 3000u);
 }
 
 TEST_F(RayFiguresTest, HolesAreCounted) {
@@ -87,6 +97,14 @@ TEST_F(RayFiguresTest, WrongAnswersOfShadowRaysAreFalseShadowsAndLeaks) {
     EXPECT_GT(f.false_shadows, 10u);
     EXPECT_GT(f.leaks, 10u);
     EXPECT_EQ(f.holes, 0u);
+}
+
+TEST_F(RayFiguresTest, WrongAnswersOfRaysToLightsCountAsWell) {
+    faulty_.wrong_light_every = 20;
+    const RayFigures f = figures();
+    EXPECT_NEAR(static_cast<double>(f.false_shadows + f.leaks) / static_cast<double>(f.light_rays), 0.05, 0.01);
+    EXPECT_GT(f.false_shadows, 10u);
+    EXPECT_GT(f.leaks, 10u);
 }
 
 TEST_F(RayFiguresTest, ErrorsOfPlacesAreInPixels) {

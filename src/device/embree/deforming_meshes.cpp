@@ -61,7 +61,7 @@ void DeformingMeshes::create(Entry& entry, const kernels::Material& material, bo
     // Embree has a tree of its own for a geometry, and refits it, only in dynamic scenes of low quality; the geometry's
     // quality then says how that tree is built (REFIT: at default quality first).
     if (entry.mesh->key_count == 1) {
-        rtcSetSceneFlags(entry.structure.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | (build_.robust ? RTC_SCENE_FLAG_ROBUST : 0)));
+        rtcSetSceneFlags(entry.structure.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | (build_.robust != BuildSettings::Robust::no ? RTC_SCENE_FLAG_ROBUST : 0)));
         rtcSetSceneBuildQuality(entry.structure.get(), RTC_BUILD_QUALITY_LOW);
         rtcSetGeometryBuildQuality(entry.triangles.get(), quality);
     }

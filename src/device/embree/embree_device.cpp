@@ -83,6 +83,8 @@ public:
                            width_ == 1 ? "" : "s", arena_.max_concurrency(), arena_.max_concurrency() == 1 ? "" : "s");
     }
 
+    bool has_robust_rays() const override { return true; }
+
     void load(const Scene& scene, const Image* environment, const BuildSettings& build) override {
         const auto begin = std::chrono::steady_clock::now();
         arena_.execute([&] { scene_ = std::make_unique<EmbreeScene>(device_.get(), scene, environment, build); });
@@ -155,6 +157,16 @@ private:
         std::vector<char> answers(rays.size());
         for_each_ray(rays.size(), [&](std::size_t i) {
             answers[i] = SceneProbe<float>(scene_->view()).occluded(EmbreeTracer(*scene_, true), rays[i], time);
+        });
+        return answers;
+    }
+
+    int light_count() const override { return SceneProbe<float>(scene_->view()).light_count(); }
+
+    std::vector<LightSight> towards_lights(std::span<const LightRay> rays, double time) override {
+        std::vector<LightSight> answers(rays.size());
+        for_each_ray(rays.size(), [&](std::size_t i) {
+            answers[i] = SceneProbe<float>(scene_->view()).towards_light(EmbreeTracer(*scene_, true), rays[i], time);
         });
         return answers;
     }

@@ -10,7 +10,7 @@ inline EmbreeSceneHandle new_structure(RTCDevice device, const BuildSettings& bu
     constexpr RTCBuildQuality kQualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH};
     EmbreeSceneHandle structure(rtcNewScene(device));
     rtcSetSceneBuildQuality(structure.get(), kQualities[static_cast<std::size_t>(build.quality)]);
-    if (build.robust) rtcSetSceneFlags(structure.get(), RTC_SCENE_FLAG_ROBUST);
+    if (build.robust != BuildSettings::Robust::no) rtcSetSceneFlags(structure.get(), RTC_SCENE_FLAG_ROBUST);
     return structure;
 }
 

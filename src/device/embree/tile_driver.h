@@ -330,7 +330,7 @@ private:
             result_->normal[2][s] = lane(normal.z, i);
             const Vec3f direction{lane(path.direction.x, i), lane(path.direction.y, i), lane(path.direction.z, i)};
             result_->depth[s] =
-                lane(hit.distance, i) * view_cosine(job_->scene->camera, lane(path.time, i), direction);
+                view_depth(job_->scene->camera, lane(path.time, i), direction, lane(hit.distance, i));
             if (job_->scene->previous_matrices) {
                 const Vec2f moved = motion_of_point(*job_->scene, static_cast<unsigned>(lane(hit.instance, i)),
                                                     static_cast<unsigned>(lane(hit.primitive, i)), lane(hit.u, i),

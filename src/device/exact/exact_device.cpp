@@ -119,6 +119,17 @@ private:
         return answers;
     }
 
+    int light_count() const override { return SceneProbe<double>(scene_at(0)->view()).light_count(); }
+
+    std::vector<LightSight> towards_lights(std::span<const LightRay> rays, double time) override {
+        const std::unique_ptr<ExactScene> scene = scene_at(time);
+        std::vector<LightSight> answers(rays.size());
+        tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
+            answers[i] = SceneProbe<double>(scene->view()).towards_light(ExactTracer(*scene, true), rays[i], time);
+        });
+        return answers;
+    }
+
     /// Whether all samples of the part see the same.
     bool stands_still() const {
         if (!(snapshot_.close_s > snapshot_.open_s)) return true;

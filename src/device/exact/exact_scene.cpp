@@ -1,5 +1,7 @@
 #include "device/exact/exact_scene.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "frame/bindings.h"
@@ -12,10 +14,39 @@ namespace {
 
 glm::dvec3 to_double(kernels::Vec3f v) { return {v.x, v.y, v.z}; }
 
-std::vector<ExactBox> boxes_of(const kernels::Geometry& mesh) {
-    std::vector<ExactBox> boxes(mesh.triangle_count);
-    for (unsigned i = 0; i < 3 * mesh.triangle_count; ++i) boxes[i / 3].add(to_double(mesh.vertices[mesh.indices[i]].position));
-    return boxes;
+using Corners = std::array<glm::dvec3, 3>;
+
+double longest_edge(const Corners& c) { return std::max({glm::distance(c[0], c[1]), glm::distance(c[1], c[2]), glm::distance(c[2], c[0])}); }
+
+/// Halves the longest edge as long as that makes pieces stouter.
+void add_boxes(const Corners& c, int halvings, std::vector<ExactBox>& boxes) {
+    constexpr double kStout = 0.1;  // height over length
+    const double length = longest_edge(c), doubled_area = glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
+    if (halvings == 0 || doubled_area >= kStout * length * length) {
+        ExactBox box;
+        for (const glm::dvec3& p : c) box.add(p);
+        return boxes.push_back(box);
+    }
+    std::size_t from = 0;
+    while (from < 2 && glm::distance(c[from], c[(from + 1) % 3]) < length) ++from;
+    const std::size_t to = (from + 1) % 3, other = (from + 2) % 3;
+    const glm::dvec3 middle = 0.5 * (c[from] + c[to]);
+    add_boxes({c[from], middle, c[other]}, halvings - 1, boxes);
+    add_boxes({middle, c[to], c[other]}, halvings - 1, boxes);
+}
+
+TriangleTree tree_of(const kernels::Geometry& mesh, ExactBox& bounds) {
+    constexpr int kHalvings = 4;
+    std::vector<ExactBox> boxes;
+    TriangleTree tree;
+    for (unsigned t = 0; t < mesh.triangle_count; ++t) {
+        const auto corner = [&](unsigned c) { return to_double(mesh.vertices[mesh.indices[3 * std::size_t{t} + c]].position); };
+        add_boxes({corner(0), corner(1), corner(2)}, kHalvings, boxes);
+        tree.triangle_of.resize(boxes.size(), t);
+    }
+    for (const ExactBox& box : boxes) bounds.add(box);
+    tree.tree = BoxTree(boxes);
+    return tree;
 }
 
 kernels::AffineOf<double> affine(const glm::dmat4& m) {
@@ -39,10 +70,7 @@ ExactMeshes::ExactMeshes(const Scene& scene) {
     packed.reserve(scene.geometries.size());
     for (const GeometryData& source : scene.geometries) {
         views.push_back(packed.emplace_back(source).view(source));
-        const std::vector<ExactBox> boxes = boxes_of(views.back());
-        trees.emplace_back(boxes);
-        bounds.emplace_back();
-        for (const ExactBox& box : boxes) bounds.back().add(box);
+        trees.push_back(tree_of(views.back(), bounds.emplace_back()));
     }
 }
 

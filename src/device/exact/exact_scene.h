@@ -15,13 +15,20 @@
 
 namespace kadr {
 
-/// The meshes of a scene in their own coordinates, each with a tree of its triangles' boxes; never change.
+/// A tree of the boxes of a mesh's triangles. Needles have several, one a stretch: the one box of a needle that lies across
+/// the axes would be met by most rays.
+struct TriangleTree {
+    BoxTree tree;
+    std::vector<std::uint32_t> triangle_of;  ///< [box]
+};
+
+/// The meshes of a scene in their own coordinates; never change.
 struct ExactMeshes {
     explicit ExactMeshes(const Scene& scene);
 
     std::vector<PackedGeometry> packed;      ///< [geometry]
     std::vector<kernels::Geometry> views;    ///< [geometry]
-    std::vector<BoxTree> trees;              ///< [geometry] of its triangles
+    std::vector<TriangleTree> trees;         ///< [geometry]
     std::vector<ExactBox> bounds;            ///< [geometry]
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "device/exact/exact_scene.h"
 #include "kernels/gpu/moving_triangle.h"
 #include "kernels/gpu/render_pixel.h"
@@ -53,14 +56,19 @@ private:
         const kernels::Instance& instance = view.instances[i];
         const kernels::Geometry& mesh = view.geometries[instance.geometry];
         const kernels::Vec3<double> origin = to_vec(ray.origin), direction = to_vec(ray.direction);
-        return scene_.meshes().trees[instance.geometry].visit(ray, farthest, [&](std::uint32_t t) {
+        const TriangleTree& tree = scene_.meshes().trees[instance.geometry];
+        std::vector<unsigned> passed;  // a triangle may have several boxes, and lets a ray pass once
+        return tree.tree.visit(ray, farthest, [&](std::uint32_t box) {
+            const unsigned t = tree.triangle_of[box];
             kernels::Vec3<double> p[3];
             for (int c = 0; c < 3; ++c) p[c] = kernels::splat<double>(mesh.vertices[mesh.indices[3 * std::size_t{t} + static_cast<std::size_t>(c)]].position);
             kernels::TriangleHitOf<double> hit{};
-            if (!kernels::intersect_triangle(origin, direction, p, 0.0, farthest, hit)) return false;
+            if (!kernels::intersect_triangle(origin, direction, p, 0.0, farthest, hit) || std::find(passed.begin(), passed.end(), t) != passed.end()) return false;
             const double facing = dot(cross(p[1] - p[0], p[2] - p[0]), direction);
-            return kernels::stops_at(view, instance.geometry, instance.material, t, static_cast<float>(hit.u), static_cast<float>(hit.v),
-                                     view.settings.cull_backfaces, facing > 0 ? 1.0f : -1.0f, coverage) && found(i, t, hit);
+            const bool stops = kernels::stops_at(view, instance.geometry, instance.material, t, static_cast<float>(hit.u), static_cast<float>(hit.v),
+                                                 view.settings.cull_backfaces, facing > 0 ? 1.0f : -1.0f, coverage);
+            if (!stops) passed.push_back(t);
+            return stops && found(i, t, hit);
         });
     }
 

@@ -68,7 +68,7 @@ public:
 
     /// Structures are built once and traced in every frame: medium is as good as high here. low is HIPRT's fastest.
     void load(const Scene& scene, const Image* environment, const BuildSettings& build) override {
-        if (build.robust)
+        if (build.robust == BuildSettings::Robust::required)
             throw InputError("--device hiprt: render.robust is true, but HIPRT tests triangles one by one, and rays slip between two that share an edge",
                              "use robust: false, or --device cpu");
         const auto begin = std::chrono::steady_clock::now();

@@ -1,9 +1,11 @@
 #include "device/tables/emitter_tables.h"
 
+#include <algorithm>
 #include <map>
 
 #include <glm/glm.hpp>
 
+#include "kernels/integrator/interaction.h"
 #include "kernels/scene/motion.h"
 #include "kernels/texture/texture.h"
 
@@ -39,6 +41,14 @@ glm::dvec3 world_vertex(const kernels::AffineOf<T>& at, const kernels::Vec3f& v)
     glm::dvec3 r;
     for (int c = 0; c < 3; ++c) r[c] = at.m[c][0] * p.x + at.m[c][1] * p.y + at.m[c][2] * p.z + at.m[c][3];
     return r;
+}
+
+/// Of the whole triangle: coordinates are largest in a corner.
+template <class T>
+T largest_clearance(const kernels::AffineOf<T>& at, const kernels::Vec3<T> (&corners)[3]) {
+    T largest = 0;
+    for (const kernels::Vec3<T>& corner : corners) largest = std::max(largest, kernels::emitter_clearance(at, corner, corners));
+    return largest;
 }
 
 }  // namespace
@@ -79,15 +89,15 @@ void EmitterTablesOf<T>::add_instance(const SceneSnapshot& snapshot, const kerne
     const kernels::AffineOf<T> at = kernels::transform_at(view, static_cast<unsigned>(index), T(0));
     const bool varies = material.emissive_texture.texture >= 0 || geometry.key_count > 1 ||
                         view.motions[index].kind != kernels::InstanceMotion::Kind::still;
-    const auto place = [&](unsigned corner) {
-        return world_vertex(at, geometry.vertices[geometry.indices[corner]].position);
-    };
+    const auto vertex = [&](unsigned corner) { return geometry.vertices[geometry.indices[corner]].position; };
+    const auto place = [&](unsigned corner) { return world_vertex(at, vertex(corner)); };
     for (unsigned t = 0; t < geometry.triangle_count; ++t) {
         const glm::dvec3 a = place(3 * t), b = place(3 * t + 1), c = place(3 * t + 2);
         const double power = 0.5 * glm::length(glm::cross(b - a, c - a)) * strength;
         if (!(power > 0)) continue;
+        const kernels::Vec3<T> own[3] = {kernels::splat<T>(vertex(3 * t)), kernels::splat<T>(vertex(3 * t + 1)), kernels::splat<T>(vertex(3 * t + 2))};
         triangles_.push_back({rounded<T>(a), rounded<T>(b - a), rounded<T>(c - a), kernels::splat<T>(material.emission), 0,
-                              static_cast<unsigned>(index), t, varies ? 1u : 0u});
+                              largest_clearance(at, own), static_cast<unsigned>(index), varies ? t : kernels::EmissiveTriangleOf<T>::kStands});
         cumulative.push_back(cumulative.back() + power);
         places.push_back({(a + b + c) / 3.0, power});
     }
