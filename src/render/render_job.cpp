@@ -20,6 +20,7 @@
 #include "render/frame_renderer.h"
 #include "render/loaded_shot.h"
 #include "render/shot_budget.h"
+#include "render/shot_pilot.h"
 #include "render/output_plan.h"
 #include "render/prepared_shot.h"
 #include "render/stopwatch.h"
@@ -65,6 +66,7 @@ private:
     FrameCache::Found find_or_render(const FrameTime& time, const ViewSpec& view, int frames_left);
     void render(DeliveryItem& item, const FrameTime& time, int frames_left);
     void load_device();
+    void plan_budget();
     ViewSpec view_with_exposure(const FrameTime& time);
     void report_written();
     void warn_of_motion(const FrameReport& report);
@@ -143,6 +145,24 @@ void RenderJob::load_device() {
     device_loaded_ = true;
 }
 
+/// Of a shot that has one: looks ahead at what its frames take.
+void RenderJob::plan_budget() {
+    if (!budget_.limited()) return;
+    const auto there = [&](const FrameTime& time) {
+        return !options_.overwrite && is_complete(frame_files(loaded_->shot().output, time.number), identity_->of(time));
+    };
+    const std::vector<int>& frames = loaded_->bound().timing().frames;
+    const Sequence& sequence = loaded_->bound().sequence();
+    if (std::all_of(frames.begin(), frames.end(), [&](int frame) { return there(sequence.frame(frame)); })) return;
+    load_device();
+    DeviceStatistics taken;
+    budget_.plan(pilot_frames({loaded_->bound(), frames, there, film_layers(loaded_->shot().output.aovs), budget_.remaining_s(), [this] { return total_.seconds(); }},
+                              *renderer_, taken));
+    summary_.pixel_samples += taken.pixel_samples;
+    summary_.times.scene += taken.set_frame_s;
+    summary_.times.trace += taken.render_s;
+}
+
 ViewSpec RenderJob::view_with_exposure(const FrameTime& time) {
     ViewSpec view = view_at(loaded_->shot().view, time.time_s());
     if (!view.automatic) return view;
@@ -177,7 +197,8 @@ FrameCache::Found RenderJob::find_or_render(const FrameTime& time, const ViewSpe
         renderer_->render(loaded_->bound(), parts,
                           {film_layers(loaded_->shot().output.aovs), view,
                            [&](double fraction) { events_.frame_progress(time.number, fraction, frames_left); },
-                           budget_.dealer(frames_left)});
+                           budget_.begin(time.number)});
+    budget_.end(frame.sampling.error.relmse);
     frame.seconds = watch.seconds();
     summary_.pixel_samples += frame.statistics.pixel_samples;
     summary_.times.scene += frame.statistics.set_frame_s;
@@ -279,6 +300,7 @@ RenderSummary RenderJob::run() {
     open_output();
     int left = static_cast<int>(loaded_->bound().timing().frames.size());
     try {
+        plan_budget();
         for (const int frame : loaded_->bound().timing().frames) {
             deliver(frame, --left);
             report_written();
