@@ -49,6 +49,8 @@ void scale_depth(Image& image, double unit_m) {
     for (std::size_t i = at; i < image.pixels.size(); i += channels) image.pixels[i] *= static_cast<float>(unit_m);
 }
 
+constexpr int kLeastPilotSamples = 16;  // fewer say little of how errors fall, and what a round takes beside them is most of its time
+
 void stop_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
 }
@@ -219,15 +221,16 @@ FrameForecast FrameRenderer::pilot(const BoundShot& shot, const std::vector<Scen
     forecast.least_samples = std::min(spec.samples, SampleSteering::kTimingRound);
     forecast.most_samples = spec.samples;
     forecast.setup_s = clock_() - begin_s;
-    const double rounds_begin_s = clock_();
     // Up to a quarter or more of what the frame itself can have; beyond that the power of the last rounds goes on.
     for (int samples = 0, count = SampleSteering::kTimingRound; samples + count <= spec.samples; count = samples) {
+        const double round_begin_s = clock_();
         rounds.render(count, mask.active.data(), false, {});
         samples += count;
-        const double taken_s = (clock_() - rounds_begin_s) * pixels / mask.count;
-        forecast.sample_s = taken_s / samples;
-        if (const double relmse = mean_relative_error(film, scale); relmse > 0) forecast.curve.push_back({static_cast<double>(samples), relmse});
-        if (forecast.setup_s + 4 * taken_s > most_s) break;
+        // Of the last and longest round alone: what a round takes beside its samples is not thirty times as much in the frame.
+        forecast.sample_s = (clock_() - round_begin_s) / count * pixels / mask.count;
+        if (const double relmse = mean_relative_error(film, scale); relmse > 0)
+            forecast.curve.push_back({static_cast<double>(samples), relmse});
+        if (samples >= kLeastPilotSamples && forecast.setup_s + 4 * samples * forecast.sample_s > most_s) break;
     }
     if (forecast.curve.empty()) forecast.least_samples = std::min(spec.samples, spec.at_least);
     rounds.gather();

@@ -82,21 +82,21 @@ TEST_F(ShotPilotTest, ForecastsWhatTheFrameTakes) {
     const LoadedShot loaded = load("[40, 20]");  // 800 pixels: all of them
     const std::vector<PlannedFrame> frames = plan(loaded, 1000);
     ASSERT_TRUE(frames[0].forecast);
-    // Each round takes 0.01 s of the fake's time, and there are ten of them: 4, 8, 16, ... up to 2048 of 4096 samples.
-    EXPECT_GE(frames[0].forecast->curve.size(), 9u);
+    // 4, 8, 16, ... up to 4096 samples; each round takes 0.01 s of the fake's time, the last one for 2048 samples.
+    ASSERT_EQ(frames[0].forecast->curve.size(), 11u);
     EXPECT_EQ(frames[0].forecast->curve.front().samples, 4);
-    EXPECT_NEAR(frames[0].forecast->sample_s * frames[0].forecast->curve.back().samples,
-                0.01 * static_cast<double>(frames[0].forecast->curve.size()), 1e-9);
+    EXPECT_EQ(frames[0].forecast->curve.back().samples, 4096);
+    EXPECT_NEAR(frames[0].forecast->sample_s, 0.01 / 2048, 1e-12);
     EXPECT_GT(frames[3].forecast->curve.front().relmse,
               frames[0].forecast->curve.front().relmse);  // the fake's noise grows with the frame
     EXPECT_GT(statistics_.pixel_samples, 0u);
 }
 
-TEST_F(ShotPilotTest, StopsWhenItsShareIsSpentWithTheEndsKnown) {
-    const std::vector<PlannedFrame> frames = plan(load("[40, 20]"), 0.5);  // 0.02 s: two rounds
-    EXPECT_TRUE(frames[0].forecast);
-    EXPECT_FALSE(frames[1].forecast);
-    EXPECT_LE(now_, 0.041);
+TEST_F(ShotPilotTest, StopsWhenItsShareIsSpent) {
+    const std::vector<PlannedFrame> frames = plan(load("[40, 20]"), 0.2);  // 0.008 s, and rounds of 0.01 s
+    EXPECT_EQ(frames[0].forecast->curve.back().samples, 16);
+    EXPECT_FALSE(frames[1].forecast || frames[2].forecast || frames[3].forecast);
+    EXPECT_NEAR(now_, 0.03, 1e-9);
 }
 
 TEST_F(ShotPilotTest, FramesThatAreThereOrComeAgainAreFree) {
