@@ -172,6 +172,14 @@ ErrorEstimate estimate_error(const Film& film, double scale) {
     return estimate;
 }
 
+double mean_relative_error(const Film& film, double scale) {
+    MeanOfPixels own;
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x)
+            if (const PixelNoise pixel = noise_of(film, x, y, scale); pixel.known) own.add(relative_error(pixel, own_square(pixel)));
+    return own.count > 0 ? own.mean() : 0;
+}
+
 WindowSums window_sums(const std::vector<double>& values, int width, int height, int radius) {
     WindowSums result{std::vector<double>(values.size()), std::vector<int>(values.size())};
     std::vector<double> rows(values.size());

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "render/environment_image.h"
+#include "render/shot_pilot.h"
 #include "render/stopwatch.h"
 
 namespace kadr {
@@ -31,6 +32,16 @@ FrameFarm::FrameFarm(const LoadedShot& shot, std::vector<DeviceChoice> devices, 
 FrameFarm::~FrameFarm() {
     if (schedule_) schedule_->stop(std::make_exception_ptr(Interrupted()));
     join();
+}
+
+DeviceStatistics FrameFarm::plan_budget(const std::vector<int>& frames, const std::function<bool(const FrameTime&)>& there) {
+    Worker& worker = *workers_.front();
+    load(worker);
+    DeviceStatistics taken;
+    budget_.plan(pilot_frames({shot_.bound(), frames, there, film_layers(shot_.shot().output.aovs), budget_.remaining_s(),
+                               settings_.clock, workers_.size()},
+                              worker.renderer, taken));
+    return taken;
 }
 
 void FrameFarm::start(FrameSchedule& schedule) {
@@ -98,9 +109,11 @@ RenderedFrame FrameFarm::render(Worker& worker, const FrameTask& task) {
     request.layers = film_layers(shot_.shot().output.aovs);
     request.view = view_of(task.time, worker);
     request.progress = [&](double fraction) { report(task, fraction); };
-    request.budget_s = budget_.dealer(not_begun(task), worker.number);
+    request.target = budget_.begin(task.time.number, worker.number);
     request.next = [&] { return schedule_->look_ahead(worker.number); };
-    return worker.renderer.render(shot_.bound(), task.parts, request);
+    RenderedFrame frame = worker.renderer.render(shot_.bound(), task.parts, request);
+    budget_.end(frame.sampling.error.relmse, worker.number);
+    return frame;
 }
 
 /// On the first frame that a device has to render: a run that finds every frame complete builds nothing.
@@ -143,13 +156,6 @@ void FrameFarm::report(const FrameTask& task, double fraction) {
         if (under_way_.empty() || *under_way_.begin() != task.index) return;
     }
     settings_.progress(task.time.number, fraction, static_cast<int>(settings_.frames - task.index) - 1);
-}
-
-/// Frames that no device has begun, as far as this one knows: those behind it, less what others render of them.
-int FrameFarm::not_begun(const FrameTask& task) {
-    const std::lock_guard lock(mutex_);
-    const auto others = std::distance(under_way_.upper_bound(task.index), under_way_.end());
-    return std::max(0, static_cast<int>(settings_.frames - task.index) - 1 - static_cast<int>(others));
 }
 
 }  // namespace kadr

@@ -38,6 +38,9 @@ public:
     FrameFarm(const FrameFarm&) = delete;
     FrameFarm& operator=(const FrameFarm&) = delete;
 
+    /// Of a shot with a time budget: looks ahead at what its frames take, on the first device. Before start().
+    /// @param there  frames that are complete already  @return what that took
+    DeviceStatistics plan_budget(const std::vector<int>& frames, const std::function<bool(const FrameTime&)>& there);
     /// Begins to render. What fails is what the frame's future throws; with several devices it says which one failed.
     /// @param schedule  outlives the farm
     void start(FrameSchedule& schedule);
@@ -70,7 +73,6 @@ private:
     void load(Worker& worker);
     ViewSpec view_of(const FrameTime& time, Worker& worker);
     void report(const FrameTask& task, double fraction);
-    int not_begun(const FrameTask& task);
     std::exception_ptr named(const Worker& worker, std::exception_ptr error) const;
 
     const LoadedShot& shot_;

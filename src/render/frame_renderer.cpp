@@ -9,6 +9,7 @@
 #include "render/denoising.h"
 #include "render/frame_memory.h"
 #include "render/loaded_shot.h"
+#include "render/pilot_mask.h"
 #include "render/render_job.h"
 #include "render/sample_shares.h"
 #include "render/stopwatch.h"
@@ -48,11 +49,7 @@ void scale_depth(Image& image, double unit_m) {
     for (std::size_t i = at; i < image.pixels.size(); i += channels) image.pixels[i] *= static_cast<float>(unit_m);
 }
 
-// Ten days: a budget that is there, but not known before the first round.
-constexpr double kUnlimitedUntilMeasured_s = 864000;
-
-/// Time that a frame takes to reach a relative mean square error of one: to reach another, divide by it.
-double difficulty_of(const Film& film, double scale, double seconds) { return estimate_error(film, scale).relmse * seconds; }
+constexpr int kLeastPilotSamples = 16;  // fewer say little of how errors fall, and what a round takes beside them is most of its time
 
 void stop_if_interrupted() {
     if (interrupt_requested()) throw Interrupted();
@@ -160,6 +157,9 @@ public:
         backwards_ = !backwards_;
     }
 
+    /// Sets the part that the first round begins with.
+    void prepare() { set_part(0); }
+
     /// Adds up what the device counted since the last part was set. Call once more after the last round.
     void gather() {
         if (part_) add(frame_.statistics, device_.statistics());
@@ -230,8 +230,9 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::shared_ptr
     const double begin_s = clock_(), scale = exposure_factor(shot.shot().shutter, shot.timing().fps);
     const ViewSpec view = request.view ? *request.view : shot.shot().view;
     double budget_s = spec.time_budget_s.value_or(std::numeric_limits<double>::infinity());
-    if (request.budget_s) budget_s = std::min(budget_s, kUnlimitedUntilMeasured_s);
+    if (request.target) budget_s = std::min(budget_s, request.target->most_s);
     SampleSteering steering(spec, budget_s, view, scale, [&] { return clock_() - begin_s; });
+    if (request.target) steering.set_target(request.target->relmse);
 
     const bool steered = spec.max_error || std::isfinite(budget_s);
     const std::vector<SampleRange> all = deal_samples(weights_of(parts), spec.samples);
@@ -246,10 +247,6 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::shared_ptr
         const double before = steered ? static_cast<double>(first) / spec.samples : 0, part = static_cast<double>(count) / (steered ? spec.samples : count);
         const auto progress = [&](double fraction) { request.progress(before + fraction * part); };
         rounds.render(count, steering.active(), spec.samples == 1, request.progress ? progress : std::function<void(double)>());
-        if (first == 0 && request.budget_s) {
-            device_->read_film(film);
-            steering.set_budget(request.budget_s(difficulty_of(film, scale, clock_() - begin_s)));
-        }
     }
     device_->read_film(film);
     rounds.gather();
@@ -260,6 +257,41 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::shared_ptr
     expose(frame.image, scale);
     frame.seconds = watch.seconds();
     return frame;
+}
+
+FrameForecast FrameRenderer::pilot(const BoundShot& shot, const std::shared_ptr<const std::vector<SceneSnapshot>>& held, const FilmLayers& layers,
+                                   double most_s, DeviceStatistics& statistics) {
+    const std::vector<SceneSnapshot>& parts = *held;
+    const RenderSpec& spec = shot.shot().render;
+    const double begin_s = clock_(), scale = exposure_factor(shot.shot().shutter, shot.timing().fps);
+    Film& film = cleared_film(shot.shot(), layers_to_render(layers, spec), Film::kHalves, parts.size() > 1 || !parts.front().shutter.plain);
+    device_->begin_film(film);
+    const PilotMask mask = pilot_mask(film.width(), film.height());
+    const double pixels = static_cast<double>(film.width()) * film.height();
+    const FrameRequest nothing_follows;
+    RenderedFrame frame;
+    Rounds rounds(*device_, film, held, nothing_follows, true, frame);
+    rounds.prepare();
+    FrameForecast forecast;
+    forecast.least_samples = std::min(spec.samples, SampleSteering::kTimingRound);
+    forecast.most_samples = spec.samples;
+    forecast.setup_s = clock_() - begin_s;
+    // Up to a quarter or more of what the frame itself can have; beyond that the power of the last rounds goes on.
+    for (int samples = 0, count = SampleSteering::kTimingRound; samples + count <= spec.samples; count = samples) {
+        const double round_begin_s = clock_();
+        rounds.render(count, mask.active.data(), false, {});
+        device_->read_film(film);
+        samples += count;
+        // Of the last and longest round alone: what a round takes beside its samples is not thirty times as much in the frame.
+        forecast.sample_s = (clock_() - round_begin_s) / count * pixels / mask.count;
+        if (const double relmse = mean_relative_error(film, scale); relmse > 0)
+            forecast.curve.push_back({static_cast<double>(samples), relmse});
+        if (samples >= kLeastPilotSamples && forecast.setup_s + 4 * samples * forecast.sample_s > most_s) break;
+    }
+    if (forecast.curve.empty()) forecast.least_samples = std::min(spec.samples, spec.at_least);
+    rounds.gather();
+    add(statistics, frame.statistics);
+    return forecast;
 }
 
 double meter_exposure(const Shot& shot, const Scene& scene, FrameRenderer& renderer, const FrameTime& first) {

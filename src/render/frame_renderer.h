@@ -11,6 +11,7 @@
 #include "frame/frame_state.h"
 #include "frame/motion_report.h"
 #include "render/sample_steering.h"
+#include "render/shot_budget.h"
 
 namespace kadr {
 
@@ -31,9 +32,7 @@ struct FrameRequest {
     FilmLayers layers;
     std::optional<ViewSpec> view;                            ///< with its exposure; absent: the shot's as it is written
     std::function<void(double fraction)> progress;
-    /// Wall time for the frame, asked for after its first round; `difficulty` is error times time, which more samples do not
-    /// change. Absent: the shot's budget.
-    std::function<double(double difficulty)> budget_s;
+    std::optional<FrameTarget> target;                       ///< of a budget for the whole shot
     /// What will be rendered after this frame; null while nobody knows. Asked while the device is busy.
     std::function<std::shared_ptr<const SceneSnapshot>()> next;
 };
@@ -54,6 +53,14 @@ public:
     RenderedFrame render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request);
     /// The same of a frame that is evaluated already. @param parts  make_snapshots of the frame
     RenderedFrame render(const BoundShot& shot, const std::shared_ptr<const std::vector<SceneSnapshot>>& parts, const FrameRequest& request);
+
+    /// Renders a few pixels of a frame, strewn over all of it, to see how difficult it is.
+    ///
+    /// @param layers     of the frames that come after it; the film is theirs
+    /// @param most_s     wall time of the whole frame for which forecasts should hold
+    /// @param statistics what that took is added to it
+    FrameForecast pilot(const BoundShot& shot, const std::shared_ptr<const std::vector<SceneSnapshot>>& parts, const FilmLayers& layers, double most_s,
+                        DeviceStatistics& statistics);
 
 private:
     class Rounds;

@@ -22,6 +22,7 @@
 #include "render/frame_identity.h"
 #include "render/frame_schedule.h"
 #include "render/loaded_shot.h"
+#include "render/shot_pilot.h"
 #include "render/output_plan.h"
 #include "render/prepared_shot.h"
 #include "render/stopwatch.h"
@@ -72,6 +73,7 @@ private:
     Rendered wait_for(const FrameTask& task) const;
     void deliver(const FrameTask& task);
     void describe(DeliveryItem& item, const FrameTask& task, const Rendered& frame);
+    void plan_budget();
     void deliver_all();
     void deliver_finished() noexcept;
     void report_written();
@@ -151,6 +153,21 @@ bool RenderJob::is_complete(const std::vector<std::filesystem::path>& files, con
         return std::filesystem::exists(file, ignored) &&
                stored_settings_hash(file) == identity.of(is_linear_file(file));
     });
+}
+
+/// Of a shot that has one: looks ahead at what its frames take.
+void RenderJob::plan_budget() {
+    if (!loaded_->shot().render.time_budget_shot_s) return;
+    const auto there = [&](const FrameTime& time) {
+        return !options_.overwrite && is_complete(frame_files(loaded_->shot().output, time.number), identity_->of(time));
+    };
+    const std::vector<int>& frames = loaded_->bound().timing().frames;
+    const Sequence& sequence = loaded_->bound().sequence();
+    if (std::all_of(frames.begin(), frames.end(), [&](int frame) { return there(sequence.frame(frame)); })) return;
+    const DeviceStatistics taken = farm_->plan_budget(frames, there);
+    summary_.pixel_samples += taken.pixel_samples;
+    summary_.times.scene += taken.set_frame_s;
+    summary_.times.trace += taken.render_s;
 }
 
 /// Of all that a frame's samples depend on. Where they are dealt until the noise on the display is small enough, the exposure
@@ -328,6 +345,7 @@ RenderSummary RenderJob::run() {
     warn(loaded_->warnings());
     open_output();
     try {
+        plan_budget();
         deliver_all();
         finish();
     } catch (...) {

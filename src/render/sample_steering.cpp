@@ -11,8 +11,8 @@ namespace kadr {
 namespace {
 
 constexpr int kWindowRadius = 3;
-// With a deadline the first round tells how fast the frame is: two samples a half.
-constexpr int kTimingRound = 4;
+// As fast as errors fall with the samples: what leads to a target is rather too few than too many.
+constexpr double kMostPower = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Rows of one half as a picture: linear R, G, B, A.
@@ -123,7 +123,7 @@ int SampleSteering::stop(SamplingStop reason) {
 }
 
 int SampleSteering::ladder_step() const {
-    const bool timed = std::isfinite(budget_s_);
+    const bool timed = std::isfinite(budget_s_) || target_relmse_ > 0;
     if (!render_.max_error && !timed) return render_.samples - so_far_;
     const int begin = timed ? std::min(kTimingRound, render_.at_least) : render_.at_least;
     int next = so_far_ == 0 ? begin : after_in_ladder(so_far_);
@@ -166,14 +166,29 @@ int SampleSteering::affordable(const Film& film) const {
     return 2 * static_cast<int>(std::min(samples / 2, 1e8));
 }
 
+/// Samples a pixel to the target, as the last two rounds tell; 0 where the next ones would lead farther away from it.
+/// Absent: without a target, or nothing is known.
+std::optional<int> SampleSteering::until_target(const Film& film) {
+    if (!(target_relmse_ > 0) || so_far_ == 0) return std::nullopt;
+    const double relmse = mean_relative_error(film, scale_);
+    // Calm so far: the fewest samples that a shot asks for may have missed what there is.
+    if (!(relmse > 0)) return so_far_ >= render_.at_least ? std::optional<int>(0) : std::nullopt;
+    before_ = std::exchange(last_, FrameForecast::Point{static_cast<double>(so_far_), relmse});
+    const double power = before_ ? convergence_between(*before_, *last_) : kMostPower;
+    const double samples = so_far_ * std::pow(relmse / target_relmse_, 1 / power);
+    return static_cast<int>(std::clamp(samples - so_far_ + 0.5, 0.0, 1e8));
+}
+
 int SampleSteering::next_round(const Film& film) {
-    const bool steered = render_.max_error || std::isfinite(budget_s_);
+    const bool steered = render_.max_error || std::isfinite(budget_s_) || target_relmse_ > 0;
     if (so_far_ == 0) rounds_begin_s_ = clock_();
     if (so_far_ >= render_.samples) return stop(steered ? SamplingStop::at_most : SamplingStop::samples);
-    if (looks_at_film() && !update_active(film)) return stop(SamplingStop::max_error);
-    const int count = std::min(ladder_step(), affordable(film));
-    if (count < 1 || (so_far_ > 0 && steered && count < 2 && render_.samples - so_far_ > 1))
-        return stop(SamplingStop::time_budget);
+    if (render_.max_error && so_far_ >= render_.at_least && !update_active(film)) return stop(SamplingStop::max_error);
+    const std::optional<int> to_target = until_target(film);
+    if (to_target == 0) return stop(SamplingStop::time_budget);
+    const int affordable_count = affordable(film), step = std::min(ladder_step(), to_target.value_or(std::numeric_limits<int>::max()));
+    if (affordable_count < 1 || (so_far_ > 0 && affordable_count < 2)) return stop(SamplingStop::time_budget);
+    const int count = std::min(step, affordable_count);
     so_far_ += count;
     pixel_samples_ += count * (active_.empty() ? static_cast<double>(film.width()) * film.height()
                                                : static_cast<double>(active_count_));

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "film/error_estimate.h"
 #include "film/film.h"
+#include "render/frame_forecast.h"
 #include "shot/shot.h"
 
 namespace kadr {
@@ -43,24 +45,29 @@ inline constexpr int kNoiseRows = 64;
 /// variance of one sample; the pixel's own number of samples makes an error of it.
 class SampleSteering {
 public:
+    /// With a deadline the first round tells how fast the frame is: two samples a half.
+    static constexpr int kTimingRound = 4;
+
     /// @param clock     seconds that the frame has taken so far
     /// @param budget_s  wall time for the frame; infinite: as long as it takes
     SampleSteering(const RenderSpec& render, double budget_s, ViewSpec view, double scale,
                    std::function<double()> clock);
 
     /// Whether next_round() looks at the film's sums, which then have to be at home.
-    bool looks_at_film() const { return render_.max_error && so_far_ >= render_.at_least; }
-    /// Samples that every active pixel gets next, even but for a fixed number; 0: the frame is done.
+    bool looks_at_film() const { return so_far_ > 0 && ((render_.max_error && so_far_ >= render_.at_least) || target_relmse_ > 0); }
+    /// Samples that every active pixel gets next, even but for a fixed number and on the way to a target; 0: the frame is done.
     int next_round(const Film& film);
     /// [y][x], 0: done; null: all pixels go on.
     const std::uint8_t* active() const { return active_.empty() ? nullptr : active_.data(); }
     int samples_so_far() const { return so_far_; }
     SamplingStop stopped_by() const { return stop_; }
-    /// Replaces the wall time for the frame (of a budget for the whole shot).
-    void set_budget(double seconds) { budget_s_ = seconds; }
+    /// Ends the frame, all of it, at a relative mean square error: where it is nearest to this one. What is left of the
+    /// pixels' own stopping is what `max_error` says.
+    void set_target(double relmse) { target_relmse_ = relmse; }
 
 private:
     int ladder_step() const;
+    std::optional<int> until_target(const Film& film);
     bool update_active(const Film& film);
     int affordable(const Film& film) const;
     int stop(SamplingStop reason);
@@ -73,6 +80,8 @@ private:
     std::vector<std::uint8_t> active_;
     std::size_t active_count_ = 0;
     int so_far_ = 0;
+    double target_relmse_ = 0;                          ///< 0: none
+    std::optional<FrameForecast::Point> before_, last_;  ///< what the last rounds came to
     double rounds_begin_s_ = 0;
     double pixel_samples_ = 0;  ///< dealt so far
     SamplingStop stop_ = SamplingStop::samples;

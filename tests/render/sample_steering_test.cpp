@@ -7,8 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/shot_budget.h"
-
 namespace kadr {
 namespace {
 
@@ -184,56 +182,38 @@ TEST(SampleSteering, StopsByErrorBeforeTheTimeIsOver) {
     EXPECT_EQ(steering.stopped_by(), SamplingStop::max_error);
 }
 
-TEST(ShotBudget, WithoutALimitDealsNothing) {
-    EXPECT_FALSE(ShotBudget(std::nullopt, [] { return 0.0; }).dealer(3));
-}
-
-TEST(ShotBudget, EqualFramesGetEqualTimes) {
-    double now = 0;
-    ShotBudget budget(10.0, [&] { return now; });
-    for (int left = 4; left >= 0; --left) {
-        const double seconds = budget.dealer(left)(0.5);
-        EXPECT_NEAR(seconds, 2, 1e-12);
-        now += seconds;
+// The noise on the right is 1/12 / n of a value near a half: a relative mean square error of about 0.12 / n in half the picture.
+TEST(SampleSteering, EndsAFrameWhereItIsNearestToATarget) {
+    for (const double target : {0.02, 0.005, 0.0007}) {
+        Painter painter(64, 9);
+        SampleSteering steering(fixed(4096), 1000, linear_view(), 1, [] { return 0.0; });
+        steering.set_target(target);
+        int rounds = 0;
+        for (; const int count = steering.next_round(painter.film()); ++rounds) painter.paint(count, steering.active(), noise_on_the_right);
+        EXPECT_EQ(steering.stopped_by(), SamplingStop::time_budget);
+        // One sample more or less, and twice the spread of what 3072 noisy pixels say: their noise has one degree of freedom each.
+        const double step = 1.0 / steering.samples_so_far(), spread = std::sqrt(2.0 / 3072);
+        EXPECT_NEAR(report_sampling(painter.film(), steering.stopped_by(), linear_view(), 1).error.relmse / target, 1, step + 2 * spread) << target;
+        EXPECT_LE(rounds, 20) << target;
     }
 }
 
-TEST(ShotBudget, PassesOnWhatAFrameLeaves) {
+TEST(SampleSteering, ATargetDoesNotOutliveTheTime) {
+    Painter painter(32, 10);
     double now = 0;
-    ShotBudget budget(10.0, [&] { return now; });
-    EXPECT_NEAR(budget.dealer(4)(1), 2, 1e-12);
-    now = 0.4;  // it stopped by its error
-    EXPECT_NEAR(budget.dealer(3)(1), 9.6 / 4, 1e-12);
+    SampleSteering steering(fixed(4096), 0.5, linear_view(), 1, [&] { return now; });
+    steering.set_target(1e-9);
+    while (const int count = steering.next_round(painter.film())) painter.paint(count, steering.active(), noise_on_the_right), now += 0.001 * count;
+    EXPECT_LE(now, 0.51);
+    EXPECT_GE(now, 0.45);
 }
 
-TEST(ShotBudget, GivesTwiceTheTimeToWhatIsTwiceAsDifficult) {
-    ShotBudget budget(30.0, [] { return 0.0; });
-    budget.dealer(2)(1);
-    const double difficult = budget.dealer(1)(2);  // the frame after it is taken to be 1.5
-    EXPECT_NEAR(difficult, 30 * 2 / 3.5, 1e-12);
-}
-
-TEST(ShotBudget, SeveralDevicesHaveAsManyTimesTheTime) {
-    double now = 0;
-    ShotBudget budget(10.0, [&] { return now; }, 2);
-    // Four frames, two at a time: each gets half of the shot.
-    const auto first = budget.dealer(2, 0), second = budget.dealer(2, 1);
-    EXPECT_DOUBLE_EQ(first(1.0), 20.0 / 3);   // one of three: the other device's is not known yet
-    EXPECT_DOUBLE_EQ(second(1.0), (20 - 20.0 / 3) / 3);
-    now = 5;
-    const auto third = budget.dealer(0, 1), fourth = budget.dealer(0, 0);
-    // Device 0's frame has ended: nothing of its time is taken any more.
-    EXPECT_DOUBLE_EQ(fourth(1.0), 5.0);
-    EXPECT_DOUBLE_EQ(third(1.0), 5.0);   // never more than there is on one device
-    now = 20;
-    EXPECT_EQ(budget.dealer(0, 0)(1.0), 0.0);
-}
-
-TEST(ShotBudget, NeverDealsLessThanNothing) {
-    double now = 0;
-    ShotBudget budget(1.0, [&] { return now; });
-    now = 5;
-    EXPECT_EQ(budget.dealer(2)(1), 0);
+TEST(SampleSteering, WhatLooksCalmGetsTheLeastThatAShotAsksFor) {
+    Painter painter(8, 11);
+    SampleSteering steering(fixed(4096), 1000, linear_view(), 1, [] { return 0.0; });
+    steering.set_target(0.01);
+    while (const int count = steering.next_round(painter.film())) painter.paint(count, steering.active(), [](int, int, std::mt19937&) { return 0.5f; });
+    EXPECT_EQ(steering.samples_so_far(), 32);
 }
 
 }  // namespace
