@@ -1,10 +1,12 @@
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "base/detached_work.h"
 #include "base/error.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -27,10 +29,8 @@ int run(const std::vector<std::string>& arguments) {
     return kDone;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    kadr::install_interrupt_handlers();
+/// What ends the program, as an exit code.
+int guarded(int argc, char** argv) {
     try {
         return run(std::vector<std::string>(argv + 1, argv + argc));
     } catch (const kadr::InputError& error) {
@@ -44,4 +44,14 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         return fail(error.what());
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    kadr::install_interrupt_handlers();
+    const int code = guarded(argc, argv);
+    if (!kadr::DetachedWork::is_running()) return code;
+    std::fflush(nullptr);
+    std::_Exit(code);  // kernels are still being compiled, and nobody waits for them
 }

@@ -1,5 +1,6 @@
 #include "cli/reporter.h"
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <mutex>
@@ -136,6 +137,9 @@ public:
     explicit PlainReporter(bool stats) : stats_(stats) {}
     void warning(const Diagnostic& warning) override { print(stderr, warning.text() + "\n"); }
     void progress(int, double, int) override {}
+    void compiling(double) override {
+        if (!said_compiling_.exchange(true)) print(stdout, "compiling kernels\n");
+    }
     void shot_started(const ShotStart& shot) override { print(stdout, shot_line(shot) + "\n"); }
     void frame_done(const FrameReport& report) override {
         print(stdout, frame_line(report) + "\n");
@@ -145,6 +149,7 @@ public:
 
 private:
     const bool stats_;
+    std::atomic<bool> said_compiling_{false};
 };
 
 /// A bar that is drawn over itself on standard error.
@@ -163,6 +168,11 @@ public:
         if (now - drawn_ < std::chrono::duration<double>(kBarInterval_s)) return;
         drawn_ = now;
         draw(frame, fraction, frames_left);
+    }
+    void compiling(double seconds) override {
+        const std::lock_guard lock(mutex_);
+        print(stderr, fmt::format("\r\033[K{}compiling kernels, {:.0f} s", shot_, seconds));
+        shown_ = true;
     }
     void shot_started(const ShotStart& shot) override {
         const std::lock_guard lock(mutex_);
@@ -272,14 +282,12 @@ public:
               {"column", warning.where.column}, {"message", warning.text()}});
     }
     void progress(int frame, double fraction, int frames_left) override {
-        {
-            const std::lock_guard lock(mutex_);
-            const Clock::time_point now = Clock::now();
-            if (now - last_ < std::chrono::duration<double>(kJsonInterval_s)) return;
-            last_ = now;
-        }
+        if (!is_due()) return;
         line({{"event", "progress"}, {"frame", frame}, {"fraction", fraction}, {"frames_left", frames_left},
               {"memory_bytes", current_memory_bytes()}});
+    }
+    void compiling(double seconds) override {
+        if (is_due()) line({{"event", "compiling"}, {"seconds", seconds}});
     }
     void shot_started(const ShotStart& shot) override {
         line({{"event", "shot"}, {"shot", shot.name}, {"number", shot.number}, {"count", shot.count}, {"frames", shot.frames}});
@@ -298,6 +306,13 @@ public:
     }
 
 private:
+    bool is_due() {
+        const std::lock_guard lock(mutex_);
+        const Clock::time_point now = Clock::now();
+        if (now - last_ < std::chrono::duration<double>(kJsonInterval_s)) return false;
+        last_ = now;
+        return true;
+    }
     void line(const Json& value) {
         // Paths may hold any bytes; JSON holds UTF-8 alone.
         const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -316,6 +331,7 @@ RenderEvents Reporter::events() {
     RenderEvents events;
     events.warning = [this](const Diagnostic& diagnostic) { warning(diagnostic); };
     events.frame_progress = [this](int frame, double fraction, int left) { progress(frame, fraction, left); };
+    events.compiling = [this](double seconds) { compiling(seconds); };
     events.shot_started = [this](const ShotStart& shot) { shot_started(shot); };
     events.frame_done = [this](const FrameReport& report) { frame_done(report); };
     return events;

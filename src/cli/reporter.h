@@ -13,6 +13,7 @@ public:
     virtual ~Reporter() = default;
     virtual void warning(const Diagnostic& warning) = 0;
     virtual void progress(int frame, double fraction, int frames_left) = 0;  ///< from any thread
+    virtual void compiling(double seconds) = 0;  ///< from any thread
     virtual void shot_started(const ShotStart& shot) = 0;                        ///< of a reel
     virtual void frame_done(const FrameReport& report) = 0;
     virtual void summary(const RenderSummary& summary) = 0;

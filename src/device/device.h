@@ -57,6 +57,22 @@ struct DeviceStatistics {
     BendingCounts bending;
 };
 
+/// What the frames of a shot ask of a device's kernels.
+struct KernelSet {
+    kernels::IntegratorKind integrator = kernels::IntegratorKind::path;
+    unsigned requirements = 0;    ///< kernels::requirement bits
+    bool asks_functions = false;  ///< rays ask about some hits: partial coverage, culled faces, meshes that bend
+    bool operator==(const KernelSet&) const = default;
+};
+
+/// Who watches a device.
+struct DeviceWatch {
+    /// Kernels are being compiled, and a frame waits for them: for how long already. Called now and then by the thread that
+    /// waits.
+    std::function<void(double seconds)> compiling;
+    const std::atomic<bool>* cancel = nullptr;  ///< set: who waits throws Interrupted
+};
+
 /// How acceleration structures are built, of a whole shot.
 struct BuildSettings {
     BuildQuality quality = BuildQuality::medium;
@@ -79,6 +95,11 @@ public:
     /// Whether it can do what BuildSettings::robust asks for.
     virtual bool has_robust_rays() const { return false; }
     virtual std::string name() const = 0;  ///< "cpu (Embree 3.13.5, 8 lanes, 2 threads)"
+    virtual void watch(DeviceWatch) {}     ///< before anything else
+    virtual bool compiles() const { return false; }  ///< kernels, when it runs: prepare() is of use
+    /// Begins to compile what the frames of a shot ask for, in the background, and returns at once. Before or after load,
+    /// from any thread. A frame that asks for more gets a kernel of its own; all leave the same pixels.
+    virtual void prepare(const KernelSet&) {}
     /// Once a shot; the scene outlives the device. `environment`: the linear R, G, B of the environment's image,
     /// copied.
     virtual void load(const Scene& scene, const Image* environment, const BuildSettings& build = {}) = 0;

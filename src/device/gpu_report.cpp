@@ -25,6 +25,7 @@ std::vector<std::string> unproven_on_gpu() {
         "the choice of build qualities: high and made small for rigid meshes, fast for bending ones and for all instances",
         "meshes that bend: vertices and boxes made by our own kernels; while the shutter is open they are boxes to HIPRT",
         "that the next frame is copied and built beside the launches of the one before, and what that gains",
+        "compiling beside other calls of HIPRT, which its sources allow",
         "frames dealt out to several GPUs",
         "when memory runs out: one frame at a time, smaller tiles, structures of lower quality",
     };

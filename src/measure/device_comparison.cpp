@@ -143,7 +143,7 @@ private:
         const unsigned seed = parts.front().settings.seed;
         for (int r = 0; r < options_.replicates; ++r) {
             for (SceneSnapshot& part : parts) part.settings.seed = seed_of(seed, r, i);
-            const RenderedFrame frame = sides_[i].renderer->render(loaded_.bound(), parts, {});
+            const RenderedFrame frame = sides_[i].renderer->render(loaded_.bound(), std::make_shared<const std::vector<SceneSnapshot>>(parts), {});
             rendered.all.add(frame.image);
             (r % 2 == 0 ? rendered.even : rendered.odd).add(frame.image);
             if (r == 0) rendered.times.set_frame_s = frame.statistics.set_frame_s;

@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "render/environment_image.h"
+#include "render/kernel_set.h"
+#include "render/render_job.h"
 #include "render/shot_pilot.h"
 #include "render/stopwatch.h"
 
@@ -25,8 +27,10 @@ FrameFarm::FrameFarm(const LoadedShot& shot, std::vector<DeviceChoice> devices, 
     : shot_(shot),
       settings_(std::move(settings)),
       budget_(shot.shot().render.time_budget_shot_s, settings_.clock, devices.size()) {
-    for (DeviceChoice& device : devices)
+    for (DeviceChoice& device : devices) {
+        device.device->watch({settings_.compiling, &interrupt_requested()});
         workers_.push_back(std::make_unique<Worker>(workers_.size(), std::move(device)));
+    }
 }
 
 FrameFarm::~FrameFarm() {
@@ -46,7 +50,18 @@ DeviceStatistics FrameFarm::plan_budget(const std::vector<int>& frames, const st
 
 void FrameFarm::start(FrameSchedule& schedule) {
     schedule_ = &schedule;
+    prepare();
     for (const auto& worker : workers_) worker->thread = std::thread([this, &one = *worker] { work(one); });
+}
+
+/// What a shot needs takes a while to find out, and kernels up to a minute: both go on while the scene is copied to the
+/// devices and the first frames are evaluated.
+void FrameFarm::prepare() {
+    if (std::none_of(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->choice.device->compiles(); })) return;
+    prepared_ = std::async(std::launch::async, [this] {
+        const KernelSet set = kernel_set_of(shot_.bound());
+        for (const auto& worker : workers_) worker->choice.device->prepare(set);
+    });
 }
 
 void FrameFarm::join() noexcept {
@@ -123,6 +138,10 @@ void FrameFarm::load(Worker& worker) {
     load_device(*worker.choice.device, shot_);
     worker.load_s = watch.seconds();
     worker.loaded = true;
+    // A frame that came first would have a kernel of its own compiled.
+    std::call_once(waited_, [this] {
+        if (prepared_.valid()) prepared_.get();
+    });
 }
 
 ViewSpec FrameFarm::view_of(const FrameTime& time) {

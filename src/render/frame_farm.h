@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -27,6 +28,7 @@ public:
         std::size_t frames = 0;         ///< of the render
         std::function<double()> clock;  ///< seconds since the render began
         std::function<void(int frame, double fraction, int frames_left)> progress;  ///< of the earliest frame under way
+        std::function<void(double seconds)> compiling;   ///< a frame waits for its kernels
         /// Called by a device's thread, before anybody else hears of the frame.
         std::function<void(const FrameTask&, const FrameTask::Rendered&)> rendered;
     };
@@ -70,6 +72,7 @@ private:
     };
     void work(Worker& worker);
     RenderedFrame render(Worker& worker, const FrameTask& task);
+    void prepare();
     void load(Worker& worker);
     ViewSpec view_of(const FrameTime& time, Worker& worker);
     void report(const FrameTask& task, double fraction);
@@ -84,6 +87,8 @@ private:
     std::optional<double> exposure_;
     std::mutex mutex_;
     std::set<std::size_t> under_way_;  ///< indices
+    std::future<void> prepared_;        ///< kernels are being compiled; not valid: no device compiles any
+    std::once_flag waited_;             ///< for that
 };
 
 }  // namespace kadr

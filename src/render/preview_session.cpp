@@ -41,6 +41,7 @@ PreviewSession::PreviewSession(const RenderOptions& options, const RenderEvents&
       loaded_(preview_shot(options, adjust)),
       renderer_(*choice_.device),
       view_(loaded_.shot().view) {
+    choice_.device->watch({events_.compiling, &interrupt_requested()});
     for (const Diagnostic& warning : loaded_.warnings()) events_.warning(warning);
     denoiser_of(shot().render);  // a missing one is known before the first ray
     load_device(*choice_.device, loaded_);

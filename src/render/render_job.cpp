@@ -123,6 +123,7 @@ RenderJob::RenderJob(PreparedShot prepared, const RenderOptions& options, const 
     settings.frames = loaded_->bound().timing().frames.size();
     settings.clock = [this] { return total_.seconds(); };
     settings.progress = events_.frame_progress;
+    settings.compiling = events_.compiling;
     settings.rendered = [this](const FrameTask& task, const Rendered& frame) { keep(task, frame); };
     farm_.emplace(*loaded_, std::move(devices_), std::move(settings));
     summary_.device = farm_->names();

@@ -72,10 +72,13 @@ struct ShotStart {
     int frames = 0;
 };
 
-/// Who watches: a progress bar, plain lines or JSON lines. Called from the rendering thread, but for frame_progress.
+/// Who watches: a progress bar, plain lines or JSON lines. Called from the thread that called render_shot, but for
+/// frame_progress and compiling.
 struct RenderEvents {
     std::function<void(const Diagnostic&)> warning = [](const Diagnostic&) {};
     std::function<void(int frame, double fraction, int frames_left)> frame_progress = [](int, double, int) {};
+    /// A frame waits for the kernels of a GPU, for so long already. From any thread.
+    std::function<void(double seconds)> compiling = [](double) {};
     std::function<void(const ShotStart&)> shot_started = [](const ShotStart&) {};   ///< of reels alone
     std::function<void(const FrameReport&)> frame_done = [](const FrameReport&) {};
 };

@@ -428,6 +428,8 @@ struct FakeEntryPoints {
                                      hiprt::FunctionNames* function_names, hiprt::Function* functions, hiprt::Module*,
                                      bool) {
         FakeHiprt& f = of(context, "build_trace_kernels");
+        if (f.while_compiling) f.while_compiling();
+        const auto locked = f.runtime_.lock();
         if (f.runtime_.begin_call("build_trace_kernels")) return Error::internal;
         if (function_count == 0 || !names || !source || !module_name || !functions) return Error::invalid_parameter;
         if (header_count != 0) f.fault("build_trace_kernels: headers come from folders");

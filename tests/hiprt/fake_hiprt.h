@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -60,6 +61,7 @@ public:
     // What a test sets.
     std::vector<std::size_t> bytes_per_triangle_of = {64, 64, 64};  ///< by quality
     std::size_t bytes_per_instance = 128, temporary_per_primitive = 32;
+    std::function<void()> while_compiling;  ///< called by the thread that compiles
     double most_degrees_a_step = 10.01;  ///< 10, and what floats add
 
 private:

@@ -1,16 +1,21 @@
 // Cutting passes into launches, and the names under which kernels are compiled and kept.
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/detached_work.h"
 #include "device/hiprt/gpu_resources.h"
 #include "device/hiprt/kernel_cache.h"
 #include "device/hiprt/launch_planner.h"
@@ -113,12 +118,13 @@ struct Compiler {
     test::RecordingRuntime runtime;
     test::FakeHiprt fake{runtime};
     hiprt::Api api = test::FakeHiprt::api();
-    std::optional<HiprtContext> context;
+    std::shared_ptr<HiprtContext> context;
     explicit Compiler(GpuVendor vendor = GpuVendor::nvidia) {
         runtime.vendor = vendor;
         check(runtime.make_current(), "use the GPU");
-        context.emplace(api, runtime, "");
+        context = std::make_shared<HiprtContext>(api, runtime, "");
     }
+    std::shared_ptr<HiprtContext> shared() const { return context; }
 };
 
 TEST(TraceKernels, NamesChangeWithEverySourceAndOption) {
@@ -127,7 +133,7 @@ TEST(TraceKernels, NamesChangeWithEverySourceAndOption) {
     folder.write("kernels/gpu/b.h", "b");
     Compiler compiler;
     const auto module = [&](const KernelNeed& need) {
-        return TraceKernels(*compiler.context, folder.path).source_of(need).module;
+        return TraceKernels(compiler.shared(), folder.path).source_of(need).module;
     };
     const KernelNeed plain{kernels::Kernel::path, 2, false};
     const std::string first = module(plain);
@@ -147,11 +153,11 @@ TEST(TraceKernels, NamesChangeWithEverySourceAndOption) {
 
 TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
     Compiler compiler;
-    TraceKernels kernels(*compiler.context, KADR_SOURCE_DIR);
+    TraceKernels kernels(compiler.shared(), KADR_SOURCE_DIR);
     const KernelNeed need{kernels::Kernel::path, 6, true};
-    const hiprt::Function function = kernels.get(need);
-    EXPECT_EQ(kernels.get(need), function);
-    EXPECT_NE(kernels.get({kernels::Kernel::direct, 2, false}), function);
+    const hiprt::Function function = kernels.get(need).function;
+    EXPECT_EQ(kernels.get(need).function, function);
+    EXPECT_NE(kernels.get({kernels::Kernel::direct, 2, false}).function, function);
     EXPECT_EQ(compiler.runtime.count("build_trace_kernels"), 2u);
     ASSERT_EQ(compiler.fake.modules.size(), 2u);
     const test::FakeHiprt::ModuleRecord& module = compiler.fake.modules.at(kernels.source_of(need).module);
@@ -165,7 +171,7 @@ TEST(TraceKernels, CompiledOnceWithExactlyWhatIsNeeded) {
 
 KernelSource source_for(GpuVendor vendor) {
     Compiler compiler(vendor);
-    return TraceKernels(*compiler.context, KADR_SOURCE_DIR).source_of({kernels::Kernel::path, 2, false});
+    return TraceKernels(compiler.shared(), KADR_SOURCE_DIR).source_of({kernels::Kernel::path, 2, false});
 }
 
 TEST(TraceKernels, EachVendorsCompilerGetsItsOptions) {
@@ -176,10 +182,87 @@ TEST(TraceKernels, EachVendorsCompilerGetsItsOptions) {
     EXPECT_NE(nvidia.module, amd.module);
 }
 
+TEST(TraceKernels, WhatCoversANeedServesIt) {
+    using kernels::Kernel;
+    Compiler compiler;
+    TraceKernels kernels(compiler.shared(), KADR_SOURCE_DIR);
+    kernels.begin({Kernel::path, 7, true});
+    const TraceKernel shot = kernels.get({Kernel::path, 7, true});
+    for (const KernelNeed& need : {KernelNeed{Kernel::path, 3, false}, {Kernel::path, 6, true}}) {
+        EXPECT_EQ(kernels.get(need).function, shot.function);
+        EXPECT_EQ(kernels.get(need).compiled_for.requirements, 7u);
+    }
+    EXPECT_EQ(compiler.runtime.count("build_trace_kernels"), 1u);
+    EXPECT_NE(kernels.get({Kernel::path, 11, false}).function, shot.function);  // more than the shot was said to need
+    EXPECT_NE(kernels.get({Kernel::direct, 3, false}).function, shot.function);
+    EXPECT_EQ(compiler.runtime.count("build_trace_kernels"), 3u);
+}
+
+/// A compilation that takes until it is told to end.
+struct LongCompilation : Compiler {
+    std::atomic<bool> began{false}, end{false};
+    LongCompilation() {
+        fake.while_compiling = [this] {
+            began = true;
+            while (!end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        };
+    }
+    static void wait_for_detached() {
+        while (DetachedWork::is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+};
+
+TEST(TraceKernels, AreCompiledInTheBackgroundAndTheOneWhoWaitsIsToldForHowLong) {
+    LongCompilation compiler;
+    TraceKernels kernels(compiler.shared(), KADR_SOURCE_DIR);
+    const KernelNeed need{kernels::Kernel::path, 2, false};
+    kernels.begin(need);
+    kernels.begin(need);  // it is on its way
+    while (!compiler.began) std::this_thread::yield();
+    EXPECT_TRUE(kernels.is_compiling());
+    std::vector<double> told;
+    EXPECT_TRUE(kernels
+                    .get(need,
+                         [&](double seconds) {
+                             told.push_back(seconds);
+                             compiler.end = told.size() == 3;
+                         })
+                    .function);
+    ASSERT_GE(told.size(), 3u);
+    EXPECT_GE(told[0], 0.1);
+    EXPECT_GT(told[1], told[0]);
+    EXPECT_FALSE(kernels.is_compiling());
+    kernels.wait([](double) { FAIL(); });
+    EXPECT_EQ(compiler.runtime.count("build_trace_kernels"), 1u);
+    compiler.wait_for_detached();
+    EXPECT_THAT(compiler.runtime.faults, ::testing::IsEmpty());
+}
+
+TEST(TraceKernels, NobodyWaitsForACompilationThatIsNotWantedAnyMore) {
+    LongCompilation compiler;
+    const std::weak_ptr<HiprtContext> context = compiler.shared();
+    {
+        TraceKernels kernels(compiler.shared(), KADR_SOURCE_DIR);
+        kernels.begin({kernels::Kernel::path, 2, false});
+        while (!compiler.began) std::this_thread::yield();
+        EXPECT_THROW(kernels.wait([](double) { throw Interrupted(); }), Interrupted);
+        compiler.context.reset();
+    }
+    // The device is gone, but not what the compiler works on.
+    EXPECT_TRUE(DetachedWork::is_running());
+    EXPECT_FALSE(context.expired());
+    EXPECT_TRUE(compiler.fake.has_context);
+    compiler.end = true;
+    compiler.wait_for_detached();
+    EXPECT_TRUE(context.expired());
+    EXPECT_FALSE(compiler.fake.has_context);
+    EXPECT_THAT(compiler.runtime.faults, ::testing::IsEmpty());
+}
+
 TEST(TraceKernels, AFailedCompilationIsAnError) {
     Compiler compiler;
-    TraceKernels kernels(*compiler.context, KADR_SOURCE_DIR);
-    compiler.runtime.failing_call = static_cast<int>(compiler.runtime.calls.size());
+    TraceKernels kernels(compiler.shared(), KADR_SOURCE_DIR);
+    compiler.runtime.failing_call = static_cast<int>(compiler.runtime.calls.size()) + 1;  // the first makes the context current
     try {
         kernels.get({kernels::Kernel::direct, 2, false});
         FAIL();

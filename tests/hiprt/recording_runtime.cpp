@@ -84,6 +84,7 @@ std::vector<std::string> RecordingRuntime::leaks() const {
 }
 
 std::size_t RecordingRuntime::count(const std::string& call) const {
+    const auto locked = lock();
     return static_cast<std::size_t>(std::count(calls.begin(), calls.end(), call));
 }
 
@@ -126,6 +127,7 @@ bool RecordingRuntime::is_pending(const Range& range) const {
         return std::any_of(uses.begin(), uses.end(), [&](const Range& used) { return used.overlaps(range); });
     };
     return std::any_of(recent_.begin(), recent_.end(), [&](const auto& work) {
+        if (has_waited_for(*work)) return false;
         return overlap(work->reads) || overlap(work->writes) || overlap(work->may_use);
     });
 }
@@ -139,13 +141,17 @@ void RecordingRuntime::join(Order& order, const Order& other) {
     for (const auto& [stream, number] : other) order[stream] = std::max(order[stream], number);
 }
 
+bool RecordingRuntime::has_waited_for(const Work& work) const {
+    const auto waited = host_.find(work.stream);
+    return waited != host_.end() && waited->second >= work.number;
+}
+
 /// Later work comes after it, on whatever stream.
 void RecordingRuntime::host_waited(const Order& order) {
     join(host_, order);
-    std::erase_if(recent_, [&](const auto& work) {
-        const auto waited = host_.find(work->stream);
-        return waited != host_.end() && waited->second >= work->number;
-    });
+    // What a launch uses is known when it runs: until then what it may race with is remembered.
+    const bool unknown = std::any_of(recent_.begin(), recent_.end(), [](const auto& work) { return !work->may_use.empty(); });
+    if (!unknown) std::erase_if(recent_, [&](const auto& work) { return has_waited_for(*work); });
 }
 
 bool RecordingRuntime::is_ordered(const Work& before, const Work& after) const {

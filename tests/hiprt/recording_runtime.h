@@ -153,6 +153,7 @@ private:
     static void join(Order& order, const Order& other);
     std::shared_ptr<Work> add_work(Stream& stream, const std::string& name, std::function<void(Work&)> run);
     void host_waited(const Order& order);
+    bool has_waited_for(const Work& work) const;
     void find_races(const Work& work);
     bool is_ordered(const Work& before, const Work& after) const;
     void note_what_a_launch_uses(Work& work, const std::string& kernel, const std::vector<std::byte>& argument);

@@ -12,6 +12,7 @@
 #include "device/hiprt/hiprt_scene.h"
 #include "device/hiprt/launch_queue.h"
 #include "device/hiprt/ray_probe.h"
+#include "device/hiprt/shared_context.h"
 #include "device/hiprt/trace_kernels.h"
 #include "device/sample_weight.h"
 #include "kernels/camera/filter_table.h"
@@ -43,7 +44,6 @@ class HiprtDevice final : public Device {
 public:
     explicit HiprtDevice(HiprtParts parts)
         : runtime_(std::move(parts.runtime)),
-          api_(parts.api),
           memory_(current(*runtime_)),
           stream_(*runtime_),
           scene_stream_(*runtime_),
@@ -51,11 +51,11 @@ public:
           uploads_(*runtime_, stream_, DownloadQueue::kBlockBytes),
           scene_uploads_(*runtime_, scene_stream_, UploadQueue::kBlockBytes),
           downloads_(*runtime_, stream_),
-          context_(api_, *runtime_, parts.cache_folder),
-          functions_(context_),
-          kernels_(context_, std::move(parts.kernel_folder)),
+          shared_(std::make_shared<SharedContext>(runtime_, parts.api, parts.cache_folder)),
+          functions_(shared_->context),
+          kernels_({shared_, &shared_->context}, std::move(parts.kernel_folder)),
           choice_(parts.kernels),
-          builder_(context_, memory_, scene_stream_),
+          builder_(shared_->context, memory_, scene_stream_),
           film_(memory_, uploads_, downloads_, stream_),
           launches_(*runtime_, stream_),
           probe_(memory_, uploads_, stream_, [this] { return probe_frame(); }) {}
@@ -64,6 +64,12 @@ public:
 
     std::string name() const override {
         return fmt::format("hiprt ({}, HIPRT API {})", runtime_->properties().name, hiprt::kApiVersion);
+    }
+
+    void watch(DeviceWatch watch) override { watch_ = std::move(watch); }
+    bool compiles() const override { return true; }
+    void prepare(const KernelSet& set) override {
+        kernels_.begin(need_of(set.integrator, set.requirements, set.asks_functions));
     }
 
     /// Structures are built once and traced in every frame: medium is as good as high here. low is HIPRT's fastest.
@@ -87,7 +93,8 @@ public:
     void set_frame(const SceneSnapshot& snapshot) override {
         const auto begin = std::chrono::steady_clock::now();
         current(*runtime_);
-        bool staged = false;
+        bool staged = scene_->is_staged(snapshot);
+        if (!staged) kernels_.wait(waiting());  // see TraceKernels: before structures are built
         with_memory("the frame", [&] { staged = scene_->set_frame(snapshot); });
         if (staged)
             stream_.wait_for(staged_);
@@ -95,10 +102,7 @@ public:
             scene_stream_.synchronize("build the structures of the frame on the GPU");
         const HiprtFrame& frame = scene_->frame();
         // Here and not when it renders: compiling takes long the first time, and is no part of what samples cost.
-        const kernels::IntegratorKind integrator = frame.view().settings.integrator;
-        const unsigned set = kernels::kernel_requirements(
-            integrator, choice_ == KernelChoice::all ? kernels::requirement::kAll : frame.requirements());
-        function_ = kernels_.get({kernels::kernel_of(integrator), set, frame.asks_functions()});
+        kernel_ = kernels_.get(need_of(frame.view().settings.integrator, frame.requirements(), frame.asks_functions()), waiting());
         shutter_ = snapshot.shutter;
         part_weight_ = snapshot.weight;
         take_filter(snapshot.settings);
@@ -106,7 +110,7 @@ public:
         statistics_ = {};
         statistics_.load_s = load_s;
         statistics_.required = frame.requirements();
-        statistics_.compiled = set;
+        statistics_.compiled = kernel_.compiled_for.requirements;
         statistics_.instances = frame.instance_count();
         statistics_.moving_instances = frame.moving_count();
         statistics_.structures = frame.structures();
@@ -119,7 +123,7 @@ public:
     /// By the thread that renders, between two launches: HIPRT's context is for one thread at a time, and this one would
     /// only wait. Copies and builds go on a stream of their own, for which the launches of that frame will wait.
     void stage(const std::shared_ptr<const SceneSnapshot>& next) override {
-        if (!stages_ || !scene_ || scene_->is_staged(*next)) return;
+        if (!stages_ || !scene_ || scene_->is_staged(*next) || kernels_.is_compiling()) return;
         current(*runtime_);
         try {
             scene_->stage(next);
@@ -158,12 +162,12 @@ public:
 
 private:
     /// What rays of any kind need: the frame at hand, without a film.
-    kernels::LaunchParams frame_params() const {
+    kernels::LaunchParams frame_params(const TraceKernel& kernel) const {
         const HiprtFrame& frame = scene_->frame();
         kernels::LaunchParams params{};
         params.scene = frame.view();
         params.top = frame.top();
-        params.functions = frame.asks_functions() ? functions_.handle() : nullptr;
+        params.functions = kernel.compiled_for.functions ? functions_.handle() : nullptr;
         params.instance_of = frame.instance_of();
         params.ray_mask = hiprt::kFullRayMask;
         return params;
@@ -172,7 +176,21 @@ private:
     RayProbe::Frame probe_frame() {
         current(*runtime_);
         const unsigned set = kernels::kernel_requirements(kernels::Kernel::probe, scene_->frame().requirements());
-        return {frame_params(), kernels_.get({kernels::Kernel::probe, set, scene_->frame().asks_functions()})};
+        const TraceKernel kernel =
+            kernels_.get({kernels::Kernel::probe, set, scene_->frame().asks_functions()}, waiting());
+        return {frame_params(kernel), kernel.function};
+    }
+
+    KernelNeed need_of(kernels::IntegratorKind integrator, unsigned requirements, bool functions) const {
+        const unsigned wanted = choice_ == KernelChoice::all ? kernels::requirement::kAll : requirements;
+        return {kernels::kernel_of(integrator), kernels::kernel_requirements(integrator, wanted), functions};
+    }
+
+    TraceKernels::Waiting waiting() const {
+        return [this](double seconds) {
+            if (watch_.cancel && watch_.cancel->load(std::memory_order_relaxed)) throw Interrupted();
+            if (watch_.compiling) watch_.compiling(seconds);
+        };
     }
 
     /// From here on to the end of the scene, one frame is on the GPU at a time. @return whether there were two
@@ -215,7 +233,7 @@ private:
         if (pass.active) active_.set_changed(memory_, uploads_, {pass.active, pixels});
         constexpr kernels::LaunchCounters kNone{};
         counters_.set(memory_, uploads_, {&kNone, 1});
-        kernels::LaunchParams params = frame_params();
+        kernels::LaunchParams params = frame_params(kernel_);
         params.filter = filter_table_.data();
         params.shutter = shutter_table_.data();
         params.active = pass.active ? active_.data() : nullptr;
@@ -242,7 +260,7 @@ private:
         const auto progress = [&](double done) {
             if (pass.progress) pass.progress((first + done * (end - first)) / film.height());
         };
-        if (!launches_.run(function_, params, rows, pass.cancel, progress, pass.idle)) return false;
+        if (!launches_.run(kernel_.function, params, rows, pass.cancel, progress, pass.idle)) return false;
         film_.rows_done();
         return true;
     }
@@ -262,14 +280,13 @@ private:
 
     // In the order in which they rest on each other; freed in the reverse order.
     std::shared_ptr<GpuRuntime> runtime_;
-    hiprt::Api api_;
     GpuMemory memory_;
     GpuStream stream_;        ///< renders
     GpuStream scene_stream_;  ///< copies and builds what is to be rendered
     GpuEvent staged_;         ///< on it: the frame to come is complete
     UploadQueue uploads_, scene_uploads_;
     DownloadQueue downloads_;
-    HiprtContext context_;
+    std::shared_ptr<SharedContext> shared_;
     HiprtFunctionTable functions_;
     TraceKernels kernels_;
     KernelChoice choice_;
@@ -284,7 +301,8 @@ private:
     std::unique_ptr<HiprtScene> scene_;
 
     bool stages_ = true;                  ///< the frame to come is made while one renders: there is memory for both
-    hiprt::Function function_ = nullptr;  ///< of the frame at hand
+    TraceKernel kernel_;                  ///< of the frame at hand
+    DeviceWatch watch_;
     kernels::FilterKind filter_kind_{};  ///< of what filter_table_ holds
     float filter_radius_ = 0;
     kernels::Shutter shutter_;  ///< of the part at hand

@@ -16,7 +16,7 @@ HiprtFrame::HiprtFrame(SharedTables& shared)
       memory_(shared.builder.memory()),
       rigid_(shared.rigid),
       bending_(shared.scene, shared.builder, shared.uploads,
-               [&shared](kernels::Kernel kernel) { return shared.kernels.get({kernel, 0, false}); }),
+               [&shared](kernels::Kernel kernel) { return shared.kernels.get({kernel, 0, false}).function; }),
       materials_(shared.scene) {}
 
 void HiprtFrame::set(const SceneSnapshot& given) {

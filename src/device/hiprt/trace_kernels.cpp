@@ -1,9 +1,13 @@
 #include "device/hiprt/trace_kernels.h"
 
 #include <algorithm>
+#include <chrono>
+#include <future>
+#include <thread>
 
 #include <fmt/format.h>
 
+#include "base/detached_work.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "device/hiprt/hiprt_error.h"
@@ -46,7 +50,7 @@ KernelSource TraceKernels::source_of(const KernelNeed& need) {
     source.text = fmt::format("#define KADR_REQUIREMENTS {}u\n#include \"{}\"\n",
                               kernels::kernel_requirements(need.kernel, need.requirements), entry.header);
     source.options = {"-I" + folder_.string()};  // HIPRT itself asks for C++17
-    if (context_.runtime().properties().vendor == GpuVendor::amd)
+    if (context_->runtime().properties().vendor == GpuVendor::amd)
         source.options.insert(source.options.end(), std::begin(kernels::kHipOptions), std::end(kernels::kHipOptions));
     else
         source.options.insert(source.options.end(), std::begin(kernels::kCudaOptions), std::end(kernels::kCudaOptions));
@@ -60,26 +64,83 @@ KernelSource TraceKernels::source_of(const KernelNeed& need) {
     return source;
 }
 
-hiprt::Function TraceKernels::get(const KernelNeed& need) {
-    const auto known = compiled_.find(need);
-    if (known != compiled_.end()) return known->second;
-    const KernelSource source = source_of(need);
+/// A kernel on its way: written by its thread until `done`, read by others after that.
+struct TraceKernels::Compilation {
+    KernelNeed need;
+    KernelSource source;
+    std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+    hiprt::Error result = hiprt::Error::internal;
+    GpuResult context_result;
+    hiprt::Function function = nullptr;
+    std::promise<void> promise;
+    std::shared_future<void> done = promise.get_future().share();
+
+    bool is_done() const { return done.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+};
+
+void TraceKernels::begin(const KernelNeed& need) {
+    if (find(need)) return;
+    auto compilation = std::make_shared<Compilation>();
+    compilation->need = need;
+    compilation->source = source_of(need);
+    std::thread([context = context_, compilation]() mutable {
+        const DetachedWork counts;
+        compile(*context, *compilation);
+        context.reset();  // where the device is gone, this ends HIPRT, in a thread that may
+        compilation->promise.set_value();
+    }).detach();
+    compilations_.push_back(std::move(compilation));
+}
+
+void TraceKernels::compile(HiprtContext& context, Compilation& compilation) {
+    compilation.context_result = context.runtime().make_current();
+    if (compilation.context_result.kind != GpuResult::Kind::success) return;
+    const KernelSource& source = compilation.source;
     const char* function_name = source.function.c_str();
     std::vector<const char*> options = pointers_to(source.options);
     hiprt::FunctionNames names[kernels::geometry_type::kCount];
     for (unsigned i = 0; i < kernels::geometry_type::kCount; ++i)
         names[i] = {kernels::kGeometryFunctions[i].intersect, kernels::kGeometryFunctions[i].filter};
-    const std::uint32_t geometry_types = need.functions ? kernels::geometry_type::kCount : 0;
-    const std::uint32_t ray_types = need.functions ? 1 : 0;
-    hiprt::Function function = nullptr;
-    check(context_.api().build_trace_kernels(context_.handle(), 1, &function_name, source.text.c_str(),
-                                             source.module.c_str(), 0, nullptr, nullptr,
-                                             static_cast<std::uint32_t>(options.size()), options.data(), geometry_types,
-                                             ray_types, need.functions ? names : nullptr, &function, nullptr, true),
-          fmt::format("compile the kernel {} for {} (what HIPRT printed above says why)",
-                      source.function, names_of_requirements(need.requirements)));
-    compiled_[need] = function;
-    return function;
+    const bool functions = compilation.need.functions;
+    const std::uint32_t geometry_types = functions ? kernels::geometry_type::kCount : 0, ray_types = functions ? 1 : 0;
+    compilation.result = context.api().build_trace_kernels(
+        context.handle(), 1, &function_name, source.text.c_str(), source.module.c_str(), 0, nullptr, nullptr,
+        static_cast<std::uint32_t>(options.size()), options.data(), geometry_types, ray_types,
+        functions ? names : nullptr, &compilation.function, nullptr, true);
+}
+
+/// The one for exactly this, or one that covers it.
+std::shared_ptr<TraceKernels::Compilation> TraceKernels::find(const KernelNeed& need) const {
+    for (const auto& compilation : compilations_)
+        if (compilation->need == need) return compilation;
+    for (const auto& compilation : compilations_)
+        if (compilation->need.covers(need)) return compilation;
+    return nullptr;
+}
+
+void TraceKernels::wait_for(const Compilation& compilation, const Waiting& waiting) {
+    // Often enough for who cancels, and for a clock that shows tenths.
+    constexpr std::chrono::milliseconds kTick{100};
+    while (compilation.done.wait_for(kTick) != std::future_status::ready)
+        if (waiting) waiting(std::chrono::duration<double>(std::chrono::steady_clock::now() - compilation.begin).count());
+}
+
+void TraceKernels::wait(const Waiting& waiting) const {
+    for (const auto& compilation : compilations_) wait_for(*compilation, waiting);
+}
+
+bool TraceKernels::is_compiling() const {
+    return std::any_of(compilations_.begin(), compilations_.end(), [](const auto& compilation) { return !compilation->is_done(); });
+}
+
+TraceKernel TraceKernels::get(const KernelNeed& need, const Waiting& waiting) {
+    begin(need);
+    const std::shared_ptr<Compilation> compilation = find(need);
+    wait_for(*compilation, waiting);
+    check(compilation->context_result, "use the GPU");
+    check(compilation->result, fmt::format("compile the kernel {} for {} (what HIPRT printed above says why)",
+                                           compilation->source.function, names_of_requirements(compilation->need.requirements)));
+    return {compilation->function, compilation->need};
 }
 
 }  // namespace kadr
