@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "frame/snapshot_key.h"
 
@@ -18,6 +20,24 @@ void find_repeats(const PilotShot& pilot, double until_s, std::vector<PlannedFra
         const Hash key = content_key(make_snapshots(pilot.shot, pilot.shot.sequence().frame(frame.number)));
         frame.free = !seen.insert(key.hex()).second;
     }
+}
+
+/// Renders the first round of a whole frame: pixels far from each other take longer than neighbours, and a frame has more to
+/// do than its samples. @return what the forecasts' time of a sample, and their time before it, are off by
+struct PilotError {
+    double sample_factor = 1, setup_s = 0;
+};
+PilotError compare_with_whole(const PilotShot& pilot, const std::shared_ptr<const std::vector<SceneSnapshot>>& parts, const FrameForecast& forecast,
+                              FrameRenderer& renderer, DeviceStatistics& statistics) {
+    constexpr double kAnyError = 1e9, kAnyTime_s = 1e9;
+    const RenderedFrame whole =
+        renderer.render(pilot.shot, parts, {pilot.layers, std::nullopt, {}, FrameTarget{kAnyError, kAnyTime_s}, {}});
+    add(statistics, whole.statistics);
+    PilotError error;
+    if (!(whole.statistics.render_s > 0) || !(forecast.sample_s > 0)) return error;
+    error.sample_factor = whole.statistics.render_s / whole.sampling.mean / forecast.sample_s;
+    error.setup_s = std::max(0.0, whole.seconds - whole.statistics.render_s - forecast.setup_s);
+    return error;
 }
 
 }  // namespace
@@ -46,10 +66,15 @@ std::vector<PlannedFrame> pilot_frames(const PilotShot& pilot, FrameRenderer& re
     // A frame alone has all the time there is.
     if (ours.size() < 2) return frames;
     const double share_s = pilot.budget_s * static_cast<double>(pilot.devices) / static_cast<double>(ours.size());
+    std::optional<PilotError> error;
     for (const std::size_t i : coarse_to_fine(ours.size())) {
         const auto parts = std::make_shared<const std::vector<SceneSnapshot>>(
             make_snapshots(pilot.shot, pilot.shot.sequence().frame(ours[i]->number)));
-        ours[i]->forecast = renderer.pilot(pilot.shot, parts, pilot.layers, share_s, statistics);
+        FrameForecast forecast = renderer.pilot(pilot.shot, parts, pilot.layers, share_s, statistics);
+        if (!error) error = compare_with_whole(pilot, parts, forecast, renderer, statistics);
+        forecast.sample_s *= error->sample_factor;
+        forecast.setup_s += error->setup_s;
+        ours[i]->forecast = std::move(forecast);
         if (pilot.clock() > end_s) break;
     }
     return frames;

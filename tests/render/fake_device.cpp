@@ -75,10 +75,10 @@ FakeDeviceScript& fake_device() {
     return script;
 }
 
-DeviceChoice make_device(const DeviceRequest&) { return {std::make_unique<FakeDevice>(), "a test asked for it"}; }
+DeviceChoice make_device(const DeviceRequest&) { return {std::make_unique<FakeDevice>(), "a test asked for it", ""}; }
 std::vector<DeviceChoice> make_devices(const DeviceRequest& request) {
     std::vector<DeviceChoice> devices;
-    for (int i = 0; i < fake_device().devices; ++i) devices.push_back({std::make_unique<FakeDevice>(i), make_device(request).why});
+    for (int i = 0; i < fake_device().devices; ++i) devices.push_back({std::make_unique<FakeDevice>(i), make_device(request).why, ""});
     return devices;
 }
 std::vector<DeviceReport> list_devices() { return {{"fake", "nothing", true, ""}}; }

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Whether steered frames end at like quality, and in time.
 
-  tools/bench/steering.py --kadr BUILD/src/cli/kadr [--shots pan,turntable,room] [--frames 6]
+  tools/bench/steering.py --kadr BUILD/src/cli/kadr [--shots pan,turntable,room] [--frames 6] [--budget SECONDS]
 
 Neighbours: consecutive frames from the middle of each shot, 320x180, with a fixed number of samples, with --max-error and
 with a budget for all of them. Of each frame the root of its estimated relMSE and its error on the display (`kadr info`); the
-figure is the largest ratio of two neighbours, which the eye would see as noise that comes and goes.
+figure is the largest ratio of two neighbours, which the eye would see as noise that comes and goes. The budget is the time that
+the fixed samples took, or the one given.
 
 Deadlines: frames with --time-budget, alone and beside as many busy processes as there are processors. The figure is how much
 of the budget the frames took: at most 1.05 and one pass.
@@ -39,13 +40,13 @@ def largest_step(values):
     return max(max(a, b) / max(min(a, b), 1e-12) for a, b in zip(values, values[1:]))
 
 
-def neighbours(kadr, shot, count, folder):
+def neighbours(kadr, shot, count, folder, budget_s=None):
     middle = middle_frame(kadr, shot)
     frames = range(middle, middle + count)
     fixed_s = None
     for name, arguments in STEERED:
         if arguments is None:
-            arguments = ("--samples", "4096", "--time-budget-shot", f"{max(fixed_s, 1):.2f}s")
+            arguments = ("--samples", "4096", "--time-budget-shot", f"{budget_s or max(fixed_s, 1):.2f}s")
         said = frames_of(kadr, shot, frames, folder, *arguments)
         fixed_s = fixed_s or sum(float(each["seconds"]) for each in said)
         relative = [float(each["error_relmse"]) ** 0.5 for each in said]
@@ -80,11 +81,12 @@ def main():
     parser.add_argument("--kadr", required=True, type=pathlib.Path)
     parser.add_argument("--shots", default="pan,turntable,room")
     parser.add_argument("--frames", type=int, default=6)
+    parser.add_argument("--budget", type=float, help="seconds for all frames of a shot")
     options = parser.parse_args()
     kadr = options.kadr.resolve()
     for name in options.shots.split(","):
         with tempfile.TemporaryDirectory() as folder:
-            neighbours(kadr, ROOT / "shots" / f"{name}.yaml", options.frames, pathlib.Path(folder))
+            neighbours(kadr, ROOT / "shots" / f"{name}.yaml", options.frames, pathlib.Path(folder), options.budget)
     for name in options.shots.split(","):
         with tempfile.TemporaryDirectory() as folder:
             deadlines(kadr, ROOT / "shots" / f"{name}.yaml", pathlib.Path(folder))
