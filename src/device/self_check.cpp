@@ -198,7 +198,9 @@ double brightness(Device& device) {
     film.clear();
     Pass pass;
     pass.sample_count = pass.total_samples = kSamples;
+    device.begin_film(film);
     device.render(pass, film);
+    device.read_film(film);
     double sum = 0;
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) sum += film.beauty(x, y).r + film.beauty(x, y).g + film.beauty(x, y).b;

@@ -118,11 +118,12 @@ public:
         return worst;
     }
 
-    /// Whether two linearly interpolated matrices would do.
-    bool linear(double enough) const {
+    /// Screen-space error of two linearly interpolated matrices, the first place and the last. @pre two frames are enough
+    double linear_error_px() const {
+        double worst = 0;
         for (std::size_t i = 1; i < 4; ++i)
-            if (places_.size() != 5 || pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i], negligible()) > enough) return false;
-        return true;
+            worst = std::max(worst, pixels_between(mixed(places_[0], places_[4], 0.25 * static_cast<double>(i)), places_[i], scales_[i], negligible()));
+        return worst;
     }
 
     void append_frames(std::vector<Decomposition>& frames, std::size_t step) const {
@@ -309,7 +310,10 @@ private:
         if (step > kWidestStep + rounding) fits_.quality.too_fast = true;
         if (error > enough) miss(i);
         fit.append_frames(fits_.frames, 4);
-        accept(i, first, segments == 1 && fit.linear(enough), error);
+        const double linear_error = segments == 1 ? fit.linear_error_px() : std::numeric_limits<double>::infinity();
+        const bool linear = linear_error <= enough;
+        // A device may then move it so: what is said of it has to hold for all of them.
+        accept(i, first, linear, linear ? std::max(error, linear_error) : error);
     }
 
     const Interval& interval_;

@@ -31,7 +31,7 @@ class Usage(ProgramTest):
 
     def test_no_command(self):
         self.assertEqual(self.refused(), "error: no command was given\n  expected one of render, preview, check, explain, describe, "
-                         "smoke, compare, measure, info, devices, stress; see kadr --help\n")
+                         "smoke, compare, compare-devices, measure, info, devices, stress; see kadr --help\n")
 
     def test_unknown_option(self):
         self.assertEqual(self.refused("render", "ball.yaml", "--sampels", "4"),

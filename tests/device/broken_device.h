@@ -31,7 +31,9 @@ public:
         break_frame(broken);
         device_->set_frame(broken);
     }
+    void begin_film(Film& film) override { device_->begin_film(film); }
     void render(const Pass& pass, Film& film) override { device_->render(pass, film); }
+    void read_film(Film& film) override { device_->read_film(film); }
     DeviceStatistics statistics() const override { return device_->statistics(); }
     Probe* probe() override { return device_->probe(); }
 

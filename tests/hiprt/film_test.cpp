@@ -95,8 +95,8 @@ TEST(FilmOnGpu, ComesHomeOnceAFrame) {
             EXPECT_EQ(film.samples(3, 3), 0u);  // it is not here
         });
         EXPECT_EQ(before, 10u);  // the counters of ten passes
-        // Beauty, samples and weights of both halves, the layers.
-        EXPECT_EQ(gpu.runtime->count("download"), before + 7);
+        // Beauty, samples and weights of both halves, depth and its weight.
+        EXPECT_EQ(gpu.runtime->count("download"), before + 8);
     }
     EXPECT_EQ(gpu.complaints(), "");
 }
@@ -113,9 +113,9 @@ TEST(FilmOnGpu, TheSameBitsHoweverMuchOfItFitsAndWheneverItIsRead) {
         EXPECT_EQ(render_rounds(*device, s, [&](Film& film) { device->read_film(film); }), expected);
     }
     EXPECT_EQ(read.complaints(), "");
-    // The whole film takes 64 * 64 * (2 * 44 + 80) bytes, one half 508 kB; less and less of it fits.
-    const std::size_t rest = plenty.runtime->most_in_use() - 64 * 64 * (2 * 44 + 80);
-    for (const std::size_t film_bytes : {600'000, 520'000, 300'000, 50'000, 9'000}) {
+    // The whole film takes 64 * 64 * (2 * 44 + 16) bytes, one half 246 kB; less and less of it fits.
+    const std::size_t rest = plenty.runtime->most_in_use() - 64 * 64 * (2 * 44 + 16);
+    for (const std::size_t film_bytes : {400'000, 250'000, 150'000, 50'000, 9'000}) {
         RoundingGpu little;
         little.runtime->capacity = rest + film_bytes;
         {

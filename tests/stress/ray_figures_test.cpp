@@ -104,7 +104,7 @@ TEST_F(RayFiguresTest, WrongAnswersOfRaysToLightsCountAsWell) {
     const RayFigures f = figures();
     EXPECT_NEAR(static_cast<double>(f.false_shadows + f.leaks) / static_cast<double>(f.light_rays), 0.05, 0.01);
     EXPECT_GT(f.false_shadows, 10u);
-    EXPECT_GT(f.leaks, 10u);
+    EXPECT_GT(f.leaks, 5u);  // few of these rays are hidden
 }
 
 TEST_F(RayFiguresTest, ErrorsOfPlacesAreInPixels) {

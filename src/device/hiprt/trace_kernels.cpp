@@ -75,6 +75,7 @@ struct TraceKernels::Compilation {
     std::promise<void> promise;
     std::shared_future<void> done = promise.get_future().share();
 
+    bool succeeded() const { return context_result.kind == GpuResult::Kind::success && result == hiprt::Error::success; }
     bool is_done() const { return done.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 };
 
@@ -137,6 +138,7 @@ TraceKernel TraceKernels::get(const KernelNeed& need, const Waiting& waiting) {
     begin(need);
     const std::shared_ptr<Compilation> compilation = find(need);
     wait_for(*compilation, waiting);
+    if (!compilation->succeeded()) std::erase(compilations_, compilation);  // who asks next tries anew
     check(compilation->context_result, "use the GPU");
     check(compilation->result, fmt::format("compile the kernel {} for {} (what HIPRT printed above says why)",
                                            compilation->source.function, names_of_requirements(compilation->need.requirements)));

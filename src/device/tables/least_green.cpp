@@ -36,6 +36,7 @@ int place_of_least(const TextureData& texture) {
 }  // namespace
 
 float least_green(const TextureData& texture) {
+    if (texture.texels.empty()) return 1;  // nothing that is shown wears it, so it was not read
     const int place = place_of_least(texture);
     return kernels::fetch_texel(texture.view(), place % texture.width, place / texture.width).y;
 }
