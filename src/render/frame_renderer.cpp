@@ -209,6 +209,16 @@ FrameRenderer::FrameRenderer(Device& device, std::function<double()> clock) : de
     if (!clock_) clock_ = [watch = Stopwatch()] { return watch.seconds(); };
 }
 
+/// Of a frame whose budget looks at what its rounds take.
+void revise_target(const FrameTarget& target, const Film& film, double scale, double seconds, const RenderSpec& spec, SampleSteering& steering) {
+    if (!target.revise || steering.samples_so_far() == 0) return;
+    const double relmse = mean_relative_error(film, scale);
+    if (!(relmse > 0)) return;  // calm so far: nothing to learn from
+    const FrameTarget revised = target.revise(seconds, relmse);
+    steering.set_target(revised.relmse);
+    steering.set_budget(std::min(revised.most_s, spec.time_budget_s.value_or(revised.most_s)));
+}
+
 RenderedFrame FrameRenderer::render(const BoundShot& shot, const FrameTime& time, const FrameRequest& request) {
     stop_if_interrupted();
     const Stopwatch watch;
@@ -241,6 +251,7 @@ RenderedFrame FrameRenderer::render(const BoundShot& shot, const std::shared_ptr
     Rounds rounds(*device_, film, held, request, steered, frame);
     const auto next_round = [&] {
         if (steering.looks_at_film()) device_->read_film(film);
+        if (request.target) revise_target(*request.target, film, scale, clock_() - begin_s, spec, steering);
         return steering.next_round(film);
     };
     for (int count = 0, first = 0; (count = next_round()) > 0; first += count) {

@@ -64,6 +64,8 @@ public:
     /// Ends the frame, all of it, at a relative mean square error: where it is nearest to this one. What is left of the
     /// pixels' own stopping is what `max_error` says.
     void set_target(double relmse) { target_relmse_ = relmse; }
+    /// Wall time for the frame from its begin on, beside what the shot sets.
+    void set_budget(double seconds) { budget_s_ = seconds; }
 
 private:
     int ladder_step() const;

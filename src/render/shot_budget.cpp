@@ -24,9 +24,9 @@ double index_of(double relmse) {
 
 double squared(double x) { return x * x; }
 
-/// Of the values and two that say 1: one frame or two prove nothing.
-double doubtful_median(std::vector<double> values) {
-    values.insert(values.end(), {1.0, 1.0});
+/// Of the values and two that say what was thought before: one frame or two prove nothing.
+double doubtful_median(std::vector<double> values, double before) {
+    values.insert(values.end(), {before, before});
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -102,7 +102,7 @@ FrameTarget ShotBudget::equal_share(std::size_t first, double now_s) const {
     std::size_t left = 0;
     for (std::size_t i = first; i < frames_.size(); ++i) left += !frames_[i].free;
     const double remaining = std::max(0.0, *seconds_ - now_s);
-    return {0, std::min(remaining, device_s(now_s) / static_cast<double>(std::max<std::size_t>(left, 1)))};
+    return {0, std::min(remaining, device_s(now_s) / static_cast<double>(std::max<std::size_t>(left, 1))), {}};
 }
 
 std::optional<FrameTarget> ShotBudget::begin(int number, std::size_t device) {
@@ -118,7 +118,8 @@ std::optional<FrameTarget> ShotBudget::begin(int number, std::size_t device) {
         under_way_[device] = {frame, now_s, now_s + share.most_s};
         return share;
     }
-    const double left = device_s(now_s), late = kLate * *seconds_, at_the_latest = left + devices_ * late;
+    const double left = device_s(now_s), at_the_latest = left + devices_ * kLate * *seconds_;
+    const bool first = !target_;
     double relmse = affordable_relmse(left, [&](double each) { return forecast_s(frame, each); });
     if (target_) {
         relmse = *target_ * std::clamp(std::pow(relmse / *target_, kFollow), 1 / squared(kDrift), squared(kDrift));
@@ -126,11 +127,29 @@ std::optional<FrameTarget> ShotBudget::begin(int number, std::size_t device) {
         relmse = std::max(
             relmse, affordable_relmse(at_the_latest, [&](double each) { return drifting_s(frame, each, kMostDrift); }));
     }
+    FrameTarget target = target_of(frame, device, relmse, left, now_s);
+    if (first)
+        target.revise = [this, device, left](double seconds, double reached) {
+            return revised(device, left, seconds, reached);
+        };
+    return target;
+}
+
+/// @param left_s  of all devices, when the frame began
+FrameTarget ShotBudget::target_of(std::size_t frame, std::size_t device, double relmse, double left_s, double now_s) {
     target_ = relmse;
     under_way_[device] = {frame, now_s, now_s + forecast_s(frame, relmse) - forecast_s(frame + 1, relmse)};
+    const double late = kLate * *seconds_;
     // On one device no frame can have more than there is.
-    return FrameTarget{relmse, std::min(longest_s(frame, relmse, at_the_latest),
-                                        std::max(0.0, *seconds_ - now_s) + late)};
+    return {relmse, std::min(longest_s(frame, relmse, left_s + devices_ * late), std::max(0.0, *seconds_ - now_s) + late), {}};
+}
+
+FrameTarget ShotBudget::revised(std::size_t device, double left_s, double seconds, double relmse) {
+    const std::lock_guard lock(*mutex_);
+    const UnderWay own = under_way_.at(device);
+    doubt_ = trust_ = seconds / std::max(pilot_s(own.frame, std::clamp(relmse, kLeastRelmse, kMostRelmse)), 1e-6);
+    const double target = affordable_relmse(left_s, [&](double each) { return forecast_s(own.frame, each); });
+    return target_of(own.frame, device, target, left_s, own.begin_s);
 }
 
 /// What a frame may take: half as much again as its forecast says where the frames to come can make up for it at all, and
@@ -154,7 +173,7 @@ void ShotBudget::end(double relmse, std::size_t device) {
     taken_.push_back((clock_() - done.begin_s) /
                      std::max(pilot_s(done.frame, std::clamp(relmse, kLeastRelmse, kMostRelmse)), 1e-6));
     if (taken_.size() > kTrusted) taken_.erase(taken_.begin());
-    trust_ = doubtful_median(taken_);
+    trust_ = doubtful_median(taken_, doubt_);
 }
 
 }  // namespace kadr

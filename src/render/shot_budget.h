@@ -16,6 +16,8 @@ namespace kadr {
 struct FrameTarget {
     double relmse = 0;  ///< at this relative mean square error; 0: never by its error
     double most_s = 0;  ///< and at the latest after this wall time
+    /// Asked after every round, with the wall time and the error so far: the target from there on. Absent: it stays.
+    std::function<FrameTarget(double seconds, double relmse)> revise;
 };
 
 /// A frame that is to come.
@@ -31,7 +33,8 @@ struct PlannedFrame {
 /// All frames get one target, the error at which what is left of the time is just enough for what is left of the
 /// frames, as forecast. Forecasts err, so the target follows, but from frame to frame by no more than kDrift: error,
 /// not time, is what a frame gets of the machine's mood. The deadline comes first only where such steps could not hold
-/// it any more.
+/// it any more. The first frame has no neighbour to be like: its target follows what its own rounds take, since a pilot on a
+/// machine that is busy elsewhere may be off by any factor.
 ///
 /// Several devices have as many times the wall time that is left, less what the frames that they render will still take.
 /// May be asked by any thread once it is planned.
@@ -73,6 +76,8 @@ private:
     double drifting_s(std::size_t first, double relmse, double most) const;
     /// Of all devices, but for what others are busy with.
     double device_s(double now_s) const;
+    FrameTarget revised(std::size_t device, double left_s, double seconds, double relmse);
+    FrameTarget target_of(std::size_t frame, std::size_t device, double relmse, double left_s, double now_s);
     FrameTarget equal_share(std::size_t first, double now_s) const;
     double longest_s(std::size_t frame, double relmse, double at_the_latest) const;
 
@@ -85,6 +90,7 @@ private:
     std::vector<std::vector<double>>
         from_here_;              ///< [frame][error]: seconds of it and all after it, by their forecasts
     std::vector<double> taken_;  ///< of the last frames with a forecast: seconds over those of the forecast
+    double doubt_ = 1;           ///< what is taken for such a ratio before there are some
     double trust_ = 1;           ///< what forecasts are to be multiplied by
     std::map<std::size_t, UnderWay> under_way_;  ///< by device
     std::optional<double> target_;               ///< relmse of the last frame

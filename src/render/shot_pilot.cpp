@@ -31,7 +31,7 @@ PilotError compare_with_whole(const PilotShot& pilot, const std::shared_ptr<cons
                               FrameRenderer& renderer, DeviceStatistics& statistics) {
     constexpr double kAnyError = 1e9, kAnyTime_s = 1e9;
     const RenderedFrame whole =
-        renderer.render(pilot.shot, parts, {pilot.layers, std::nullopt, {}, FrameTarget{kAnyError, kAnyTime_s}, {}});
+        renderer.render(pilot.shot, parts, {pilot.layers, std::nullopt, {}, FrameTarget{kAnyError, kAnyTime_s, {}}, {}});
     add(statistics, whole.statistics);
     PilotError error;
     if (!(whole.statistics.render_s > 0) || !(forecast.sample_s > 0)) return error;

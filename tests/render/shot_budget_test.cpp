@@ -166,6 +166,38 @@ TEST(ShotBudget, SeveralDevicesShareTheTime) {
     EXPECT_NEAR(std::max(free_at[0], free_at[1]), kBudget_s, 0.05 * kBudget_s);
 }
 
+/// A pilot on a machine that did something else took ten times too long.
+TEST(ShotBudget, TheFirstFrameFindsOutWhatItTakes) {
+    const double setup_s = 0.05, sample_s = 0.01;
+    const FrameForecast slow{10 * setup_s, 10 * sample_s, 4, 65536, {{4, 0.25}, {64, 0.25 / 16}}};
+    double now = 0;
+    ShotBudget budget(21.0, [&] { return now; });
+    budget.plan({{0, false, slow}, {1, false, slow}, {2, false, slow}, {3, false, slow}});
+    std::vector<double> samples;
+    for (int frame = 0; frame < 4; ++frame) {
+        FrameTarget target = *budget.begin(frame);
+        EXPECT_EQ(target.revise != nullptr, frame == 0);
+        const double begin = now;
+        now += setup_s + 4 * sample_s;
+        double taken = 4;
+        // Rounds that double, as far as the target asks for more.
+        while (true) {
+            if (target.revise) {
+                const FrameTarget revised = target.revise(now - begin, 1 / taken);
+                target.relmse = revised.relmse, target.most_s = revised.most_s;
+            }
+            const double round = std::min({taken, std::round(1 / target.relmse) - taken, std::floor((target.most_s - (now - begin)) / sample_s)});
+            if (round < 1) break;
+            taken += round, now += round * sample_s;
+        }
+        samples.push_back(taken);
+        budget.end(1 / taken);
+    }
+    // 21 s are 4 * (0.05 + 0.01 * 520) s.
+    for (const double each : samples) EXPECT_NEAR(each, 520, 0.05 * 520);
+    EXPECT_NEAR(now, 21, 0.05 * 21);
+}
+
 TEST(ShotBudget, FramesThatAreFreeLeaveTheirTimeToOthers) {
     const FrameForecast forecast{0, 0.01, 4, 65536, {{4, 0.25}, {64, 0.25 / 16}}};
     ShotBudget budget(2.0, [] { return 0.0; });
