@@ -108,19 +108,20 @@ template <class T>
 SHARED_FN AffineOf<T> transform_at(const SceneViewOf<T>& scene, unsigned instance, T time) {
     const InstanceMotion& motion = scene.motions[instance];
     if (motion.kind == InstanceMotion::Kind::still) return scene.matrices[motion.first];
-    if (motion.kind == InstanceMotion::Kind::linear) {
-        const AffineOf<T> &a = scene.matrices[motion.first], &b = scene.matrices[motion.first + 1];
-        AffineOf<T> r;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 4; ++j) r.m[i][j] = lerp(a.m[i][j], b.m[i][j], time);
-        return r;
-    }
     const T position = clamp(time, T(0.0f), T(1.0f)) * static_cast<T>(motion.count - 1);
     int segment = truncate(position);
     const int last = static_cast<int>(motion.count) - 2;
     if (segment > last) segment = last;
+    const T fraction = position - static_cast<T>(segment);
+    if (motion.kind == InstanceMotion::Kind::linear) {
+        const AffineOf<T> &a = scene.matrices[motion.first + segment], &b = scene.matrices[motion.first + segment + 1];
+        AffineOf<T> r;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 4; ++j) r.m[i][j] = lerp(a.m[i][j], b.m[i][j], fraction);
+        return r;
+    }
     const TransformKeyOf<T>* keys = scene.keys + motion.first + segment;
-    return compose(interpolate(keys[0], keys[1], position - static_cast<T>(segment)));
+    return compose(interpolate(keys[0], keys[1], fraction));
 }
 
 }  // namespace kadr::kernels

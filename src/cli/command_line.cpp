@@ -375,7 +375,7 @@ void Parser::add_measure() {
     app->add_option("--output", options.output, "folder of the report (default: NAME.measure in the working folder)");
     app->add_flag("--quick", options.quick, "smaller, fewer frames and values: under a minute for a shot such as the samples");
     app->add_option("--frames", invocation_.render.overrides.frames, "frames to measure: 0,40-41 (default: some of the shot's)");
-    app->add_option("--sweep", raw_.sweep, "some of samples, bounces, integrator, motion_tolerance, clamp, denoise, texture, build, robust (default: all)");
+    app->add_option("--sweep", raw_.sweep, "some of samples, bounces, integrator, motion_tolerance, motion_frames, clamp, denoise, texture, build, robust, device (default: all)");
     add_set(app);
     app->add_option("--size", raw_.size, "WIDTHxHEIGHT in pixels (default: the shot's, at most 320 pixels long, 128 with --quick)");
     add_device(app);

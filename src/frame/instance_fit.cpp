@@ -17,6 +17,7 @@ namespace kadr {
 namespace {
 
 constexpr double kWidestStep = 0.17453292519943295;  // 10 degrees: what bounds of moving instances are good for
+constexpr double kHalfTurn = 3.1415926535897931, kWidestMixed = 2.9670597283903604;  // 180 and 170 degrees: of fixed frames
 constexpr double kBesideCamera = 0.05;  // of an instance's radius: nearer corners stand for faces that are farther away
 constexpr double kVanishing = 1e-5;     // of the scale near by: what stands for a scale of zero
 
@@ -68,7 +69,7 @@ glm::dmat4 mixed(const glm::dmat4& a, const glm::dmat4& b, double u) { return a 
 class Fit {
 public:
     Fit(std::vector<glm::dmat4> places, const Interval& interval, const std::vector<PixelScale>& scales)
-        : places_(std::move(places)), interval_(interval), scales_(scales) {
+        : places_(std::move(places)), interval_(interval), scales_(scales), mixes_matrices_(interval.fixed() && interval.fixed()->mix == MotionMix::matrix) {
         parts_.reserve(places_.size());
         for (const glm::dmat4& place : places_) parts_.push_back(decompose(place));
     }
@@ -105,8 +106,7 @@ public:
         const std::size_t segments = places_.size() / 4;
         const double position = u * static_cast<double>(segments);
         const std::size_t from = 4 * std::min(static_cast<std::size_t>(position), segments - 1);
-        const glm::dmat4 is = compose(interpolate(parts_[from], parts_[from + 4], position - 0.25 * static_cast<double>(from)));
-        return pixels_between(is, wanted, scale, negligible());
+        return pixels_between(between(from, position - 0.25 * static_cast<double>(from)), wanted, scale, negligible());
     }
 
     /// Screen-space error of every fourth place as a frame; stops early once beyond `enough`.
@@ -114,7 +114,7 @@ public:
         double worst = 0;
         for (std::size_t i = 0; i < places_.size() && worst <= enough; ++i)
             if (const std::size_t from = i / 4 * 4; i != from)
-                worst = std::max(worst, pixels_between(compose(interpolate(parts_[from], parts_[from + 4], 0.25 * static_cast<double>(i - from))), places_[i], scales_[i], negligible()));
+                worst = std::max(worst, pixels_between(between(from, 0.25 * static_cast<double>(i - from)), places_[i], scales_[i], negligible()));
         return worst;
     }
 
@@ -132,6 +132,10 @@ public:
 
 private:
     double negligible() const { return 0.1 * interval_.tolerance_px; }
+    /// What is traced between the frames at `from` and the next one.
+    glm::dmat4 between(std::size_t from, double u) const {
+        return mixes_matrices_ ? mixed(places_[from], places_[from + 4], u) : compose(interpolate(parts_[from], parts_[from + 4], u));
+    }
     bool keeps_its_sign() const {
         return std::all_of(parts_.begin(), parts_.end(), [&](const Decomposition& p) { return (p.scale.z < 0) == (parts_[0].scale.z < 0); });
     }
@@ -156,6 +160,7 @@ private:
     std::vector<Decomposition> parts_;
     const Interval& interval_;
     const std::vector<PixelScale>& scales_;
+    bool mixes_matrices_;
 };
 
 /// Fits the frames of some instances; those that need more go round again with twice as many.
@@ -230,6 +235,12 @@ private:
     }
 
     void enqueue(std::size_t i, const NodeRig::Activity& activity) {
+        if (const FixedMotionFrames* fixed = interval_.fixed()) {
+            const int segments = fixed->count - 1;
+            uneven_[i] = activity.keys > 0 && (activity.grid == 1 || segments % activity.grid != 0);
+            waiting_[segments].push_back(i);
+            return;
+        }
         const double steps = std::ceil(activity.turn_rad / kWidestStep - 1e-9);
         if (!(steps <= kMostSegments)) fits_.quality.too_fast = true;
         // Keys that no even grid meets are smoothed: more segments than keys, so that none is passed over.
@@ -296,6 +307,7 @@ private:
         if (!fit.open_up())
             return refuse(i, "turns inside out (its scale passes through zero) within the shutter that opens",
                           "expected scales that keep their sign; use a step key to mirror an object");
+        if (const FixedMotionFrames* fixed = interval_.fixed()) return keep_fixed(i, *fixed, fit);
         // Where vertices bend as well, both share the tolerance.
         const double enough = kMotionMargin * interval_.tolerance_px * (instances_[i].seed->deformer >= 0 ? 1 - kDeformationShare : 1);
         const bool last = 2 * segments > kMostSegments;
@@ -316,6 +328,22 @@ private:
         accept(i, first, linear, linear ? std::max(error, linear_error) : error);
     }
 
+    /// As many frames as the shot says, whatever they miss.
+    void keep_fixed(std::size_t i, const FixedMotionFrames& fixed, const Fit& fit) {
+        const bool matrices = fixed.mix == MotionMix::matrix;
+        const double step = fit.widest_step();
+        if (step >= (matrices ? kWidestMixed : kHalfTurn))
+            return refuse(i, fmt::format("turns by {:.0f} degrees from one of the {} motion frames (render.motion_frames) to the next in the shutter that opens", glm::degrees(step), fixed.count),
+                          matrices ? "expected less than 170 degrees, or the matrices between them have no size; take more frames, `mix: srt` or `motion_frames: auto`"
+                                   : "expected less than 180 degrees, or it turns the other way; take more frames or `motion_frames: auto`");
+        double error = fit.error_px(std::numeric_limits<double>::infinity());
+        if (uneven_[i]) error = std::max(error, error_px_in_corners(i, fit));
+        fits_.quality.widest_step_rad = std::max(fits_.quality.widest_step_rad, step);
+        const std::size_t first = fits_.frames.size();
+        fit.append_frames(fits_.frames, 4);
+        accept(i, first, matrices, error);
+    }
+
     const Interval& interval_;
     std::span<const Instance> instances_;
     InstanceFits& fits_;
@@ -327,6 +355,11 @@ private:
 };
 
 }  // namespace
+
+const FixedMotionFrames* Interval::fixed() const {
+    const std::optional<FixedMotionFrames>& frames = shot.shot().render.motion_frames;
+    return frames ? &*frames : nullptr;
+}
 
 PixelScale Interval::scale_at(double u) const {
     CameraState camera = camera_at(shot, time(u));

@@ -22,6 +22,8 @@ struct Interval {
     int image_height;
 
     double time(double u) const { return open_s + u * (close_s - open_s); }
+    /// Where the shot has a fixed number of motion frames; null: as many as the tolerance asks for.
+    const FixedMotionFrames* fixed() const;
     /// The camera's view of points that are relative to the render origin.
     PixelScale scale_at(double u) const;
 };
@@ -30,6 +32,7 @@ struct Interval {
 struct MotionFit {
     bool too_fast = false;          ///< something turns so fast that 129 frames are not enough: nothing was added
     bool missed = false;            ///< something strays beyond the motion tolerance although it has 129 frames
+    double widest_step_rad = 0;     ///< between two frames, where their number is fixed
     Reach reach;                    ///< of all instances
     std::vector<double> corners_s;  ///< keys, beside every even grid, of what strays: good times to split the shutter at
 };
@@ -49,7 +52,7 @@ struct InstanceFits {
     MotionFit quality;
 };
 
-/// As few frames as keep every instance within the motion tolerance, by doubling.
+/// As few frames as keep every instance within the motion tolerance, by doubling; or as many as the shot says.
 InstanceFits fit_instances(const Interval& interval, std::span<const Instance> instances);
 
 }  // namespace kadr

@@ -62,6 +62,7 @@ MotionFit quality_of(const std::vector<Batch>& batches) {
         const MotionFit& fit = batch.fits.quality;
         all.too_fast |= fit.too_fast;
         all.missed |= fit.missed;
+        all.widest_step_rad = std::max(all.widest_step_rad, fit.widest_step_rad);
         all.corners_s.insert(all.corners_s.end(), fit.corners_s.begin(), fit.corners_s.end());
     }
     return all;
@@ -239,7 +240,10 @@ glm::dmat4 interpolate(const MotionFrames& motion, std::size_t instance, double 
     if (count == 1) return compose(frame_parts(motion, instance, 0));
     const double position = std::clamp(time, 0.0, 1.0) * (count - 1);
     const auto segment = std::min(static_cast<unsigned>(position), count - 2);
-    return compose(interpolate(frame_parts(motion, instance, segment), frame_parts(motion, instance, segment + 1), position - segment));
+    const Decomposition from = frame_parts(motion, instance, segment), to = frame_parts(motion, instance, segment + 1);
+    const double u = position - segment;
+    if (motion.mixes_matrices && motion.linear[instance]) return compose(from) * (1 - u) + compose(to) * u;
+    return compose(interpolate(from, to, u));
 }
 
 MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s, SceneSnapshot& snapshot) {
@@ -253,6 +257,8 @@ MotionFit add_motion_frames(const BoundShot& shot, double open_s, double close_s
     fit.reach = still->reach;
     fit.reach.add(own.reach);
     join(still, std::move(own), snapshot);
+    snapshot.motion.mixes_matrices = interval.fixed() && interval.fixed()->mix == MotionMix::matrix;
+    snapshot.motion.widest_step_rad = fit.widest_step_rad;
     snapshot.motion.max_error_px = packing.max_error_px();
     snapshot.motion.bending_error_px = packing.bending_error_px();
     snapshot.motion.worst = static_cast<std::uint32_t>(packing.max_error_px() > 0 ? still->instances.size() + packing.worst() : 0);

@@ -9,7 +9,8 @@
 namespace kadr {
 
 /// world_from_geometry (in the render space) of an instance at a time in [0, 1] of the shutter, as every device has it:
-/// evenly spaced frames, T * R * S with shear linearly, rotation by slerp along the shorter arc.
+/// evenly spaced frames, T * R * S with shear linearly, rotation by slerp along the shorter arc; matrices linearly where the shot
+/// asks for it.
 /// Times outside [0, 1] clamp.
 glm::dmat4 interpolate(const MotionFrames& motion, std::size_t instance, double time);
 

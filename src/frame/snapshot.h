@@ -27,8 +27,11 @@ struct MotionFrames {
     SharedList<FrameType> types;                   ///< [instance]
     SharedList<kernels::FrameSrt> srt;
     SharedList<kernels::FrameMatrix> matrices;
-    /// Whether linearly interpolated matrices (two keys) already meet the motion tolerance; [instance].
+    /// Whether matrices are interpolated linearly: where two of them already meet the motion tolerance, and where the shot asks
+    /// for it; [instance].
     SharedList<std::uint8_t> linear;
+    bool mixes_matrices = false;                    ///< the shot asks for it (render.motion_frames), whatever comes of it
+    double widest_step_rad = 0;                     ///< between two frames of a fixed number; 0: at most 10 degrees
     double max_error_px = 0;                        ///< largest screen-space deviation from the true path
     double bending_error_px = 0;                    ///< the same of instances whose vertices bend, without their vertices
     std::uint32_t worst = 0;                        ///< index of the instance that has max_error_px

@@ -41,6 +41,7 @@ public:
     Measurement run() {
         const Shot shot = plan();
         render_reference(shot);
+        look_at_reference();
         Sweep sweep = plan_sweep(shot.render, options_.axes, sweep_size_);
         result_.left_out = std::move(sweep.left_out);
         const int count = static_cast<int>(sweep.variants.size());
@@ -101,11 +102,13 @@ private:
         return shot;
     }
 
-    RenderSummary render(Shot shot, bool view_wanted = false) const {
+    /// @param device  empty: that of the command line
+    RenderSummary render(Shot shot, bool view_wanted = false, const std::string& device = "") const {
         PreparedShot prepared{std::move(shot), std::nullopt, view_wanted};
         RenderOptions options;
         options.shot = options_.render.shot;
         options.device = options_.render.device;
+        if (!device.empty()) options.device.name = device;
         return render_prepared(std::move(prepared), options, events_.render);
     }
 
@@ -139,6 +142,17 @@ private:
         result_.reference_picture = write_picture("reference", mean_of(references_.front()).image, view_of(own, 0));
     }
 
+    /// What the reference tells of the choices that there are.
+    void look_at_reference() {
+        sweep_size_.moves = std::any_of(result_.references.begin(), result_.references.end(), [](const fs::path& image) {
+            const Metadata metadata = describe_image(image);
+            const auto frames = metadata.find("motion_frames");
+            return frames != metadata.end() && frames->second != "0" && frames->second != "1";
+        });
+        for (const DeviceReport& device : list_devices())
+            sweep_size_.devices.push_back({device.name, device.usable ? "" : device.reason, result_.device.starts_with(device.name + " ") || result_.device.starts_with(device.name + ":")});
+    }
+
     /// How a frame is looked at: an automatic exposure is the reference's.
     ViewSpec view_of(const Shot& own, std::size_t frame) const {
         if (own.view.automatic) return metered_;
@@ -162,7 +176,7 @@ private:
         std::vector<std::string> patterns;
         for (const std::uint32_t seed : kSeeds) {
             patterns.push_back((result_.folder / "images" / variant.id() / fmt::format("s{}", patterns.size() + 1)).string() + ".{frame:04}.exr");
-            render(variant_of(overrides, seed, patterns.back()));
+            render(variant_of(overrides, seed, patterns.back()), false, variant.device);
         }
         return figures(variant, patterns, parse_shot(options_.render.shot, overrides));
     }

@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 # Okabe and Ito's palette: told apart with any colour vision.
 COLORS = {"shot": "#000000", "samples": "#0072B2", "bounces": "#D55E00", "integrator": "#CC79A7",
-          "motion_tolerance": "#009E73", "clamp": "#E69F00", "denoise": "#56B4E9", "texture": "#8B4513", "build": "#6A3D9A", "robust": "#B2A000",
+          "motion_tolerance": "#009E73", "motion_frames": "#7FC8A9", "device": "#A05195", "clamp": "#E69F00", "denoise": "#56B4E9", "texture": "#8B4513", "build": "#6A3D9A", "robust": "#B2A000",
           "recommended": "#666666"}
 SHARES = {"noise": "#0072B2", "bounces": "#D55E00", "motion": "#009E73", "clamp": "#E69F00", "denoise": "#56B4E9", "texture": "#8B4513", "other": "#999999"}
 MARKS = {"shot": "*", "recommended": "P"}

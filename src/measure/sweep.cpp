@@ -15,13 +15,7 @@ namespace kadr {
 
 namespace {
 
-constexpr std::array<const char*, 9> kAxes{"samples", "bounces", "integrator", "motion_tolerance", "clamp", "denoise", "texture", "build", "robust"};
-
-/// What a renderer may offer a choice of, and this one does not.
-constexpr std::pair<const char*, const char*> kNoChoice[] = {
-    {"motion_frames", "their number follows from render.motion_tolerance: sweep motion_tolerance"},
-    {"device", "the CPU is the only device"},
-};
+constexpr std::array<const char*, 11> kAxes{"samples", "bounces", "integrator", "motion_tolerance", "motion_frames", "clamp", "denoise", "texture", "build", "robust", "device"};
 
 constexpr int kLeastTexture = 16;   // smaller ones cost nothing
 
@@ -36,18 +30,20 @@ public:
         if (axis == "bounces") bounces();
         if (axis == "integrator") integrator();
         if (axis == "motion_tolerance") motion_tolerance();
+        if (axis == "motion_frames") motion_frames();
         if (axis == "clamp") clamp();
         if (axis == "denoise") other("denoise", render_.denoise == DenoiserKind::none ? "oidn" : "none");
         if (axis == "texture") texture();
         if (axis == "build") build();
         if (axis == "robust") other("robust", render_.robust.value_or(false) ? "false" : "true");
+        if (axis == "device") devices();
     }
     Sweep take() { return std::move(sweep_); }
 
 private:
     void add(const char* axis, const std::string& value, std::vector<std::pair<std::string, std::string>> set, int samples = 0) {
         set.emplace_back("render.samples", std::to_string(samples > 0 ? samples : size_.samples));
-        sweep_.variants.push_back({axis, value, std::move(set)});
+        sweep_.variants.push_back({axis, value, std::move(set), {}});
     }
     void samples() {
         for (const int count : size_.sample_counts)
@@ -81,6 +77,28 @@ private:
         for (const double px : size_.quick ? std::vector{0.02, 0.5} : std::vector{0.02, 0.1, 0.5, 2.0})
             if (px != render_.motion_tolerance_px) add("motion_tolerance", format_number(px) + " px", {{"render.motion_tolerance", format_number(px) + " px"}});
     }
+    /// Few and many, each way to mix them; and what the tolerance asks for, where the shot says a number.
+    void motion_frames() {
+        if (!size_.moves) return sweep_.left_out.push_back({"motion_frames", "nothing moves while the shutter is open, in the frames at hand"});
+        if (render_.motion_frames) add("motion_frames", "auto", {{"render.motion_frames", "auto"}});
+        for (const int count : size_.quick ? std::vector{2, 5} : std::vector{2, 5, 17})
+            for (const auto& [name, mix] : {std::pair{"srt", MotionMix::srt}, std::pair{"matrix", MotionMix::matrix}})
+                if (render_.motion_frames != FixedMotionFrames{count, mix})
+                    add("motion_frames", fmt::format("{} {}", count, name), {{"render.motion_frames", fmt::format("{{ count: {}, mix: {} }}", count, name)}});
+    }
+    /// Every other one; what is not usable is left out with its reason.
+    void devices() {
+        for (const SweepDevice& device : size_.devices) {
+            if (device.own) continue;
+            if (!device.missing.empty()) {
+                sweep_.left_out.push_back({"device " + device.name, device.missing});
+                continue;
+            }
+            add("device", device.name, {});
+            sweep_.variants.back().device = device.name;
+        }
+        sweep_.left_out.push_back({"device exact", "the reference of `kadr stress` in double; no shot is rendered on it"});
+    }
     void clamp() {
         const auto limit = [](const std::optional<double>& value) { return value ? format_number(*value) : std::string("none"); };
         for (const char* indirect : {"none", "10", "3", "1"})
@@ -105,8 +123,6 @@ std::vector<std::string> parse_axes(const std::string& list) {
     std::vector<std::string> axes;
     std::istringstream words(list);
     for (std::string word; std::getline(words, word, ',');) {
-        for (const auto& [name, reason] : kNoChoice)
-            if (word == name) throw InputError(fmt::format("--sweep names '{}', which this Kadr has no choice in: {}", word, reason), fmt::format("expected some of {}", fmt::join(kAxes, ", ")));
         if (std::find(kAxes.begin(), kAxes.end(), word) == kAxes.end())
             throw InputError(fmt::format("--sweep names '{}'", word), fmt::format("expected some of {}", fmt::join(kAxes, ", ")));
         if (std::find(axes.begin(), axes.end(), word) == axes.end()) axes.push_back(word);

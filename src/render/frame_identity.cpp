@@ -78,6 +78,8 @@ void add_settings(Metadata& metadata, const RenderSpec& render) {
                                       render.bounces.glossy, render.bounces.transmission);
     metadata["filter"] = fmt::format("{} {} px", word_of("render.filter.type", render.filter), format_number(render.filter_width_px));
     metadata["motion_tolerance_px"] = format_number(render.motion_tolerance_px);
+    metadata["motion_frames_set"] =
+        render.motion_frames ? fmt::format("{} {}", render.motion_frames->count, word_of("render.motion_frames.mix", render.motion_frames->mix)) : "auto";
     metadata["clamp_direct"] = limit_of(render.clamp_direct);
     metadata["clamp_indirect"] = limit_of(render.clamp_indirect);
     metadata["build"] = word_of("render.build", render.build);

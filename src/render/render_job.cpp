@@ -300,9 +300,12 @@ void RenderJob::warn_of_motion(const FrameReport& report) {
     astray.warning = true;
     astray.found = fmt::format("frame {}: {} strays {:.3g} px from its true path, more than render.motion_tolerance, {} px", report.frame,
                                report.motion.worst, report.motion.largest_px(), format_number(report.motion.tolerance_px));
-    astray.expected = fmt::format("129 motion frames in each of {} part{} of the shutter are not enough for it; close the shutter earlier, raise the tolerance, "
-                                  "or render.samples: no part gets less than one",
-                                  report.motion.parts, report.motion.parts == 1 ? "" : "s");
+    if (const auto& fixed = loaded_->shot().render.motion_frames; fixed && report.motion.largest_px() > report.motion.camera_px)
+        astray.expected = fmt::format("render.motion_frames is {}; take more, or `motion_frames: auto` for as many as the tolerance asks for", fixed->count);
+    else
+        astray.expected = fmt::format("129 motion frames in each of {} part{} of the shutter are not enough for it; close the shutter earlier, raise the tolerance, "
+                                      "or render.samples: no part gets less than one",
+                                      report.motion.parts, report.motion.parts == 1 ? "" : "s");
     warn({astray});
 }
 

@@ -61,6 +61,17 @@ void read_filter(const Section& section, RenderSpec& render) {
     assign(render.filter_width_px, read_number(map["width"]));
 }
 
+void read_motion_frames(const Section& section, RenderSpec& render) {
+    const Field field = section["motion_frames"];
+    if (!field || is_word(field, "auto")) return;
+    const Section map = section.section("motion_frames");
+    const auto count = map.present() ? read_integer(map["count"]) : read_integer(field);
+    FixedMotionFrames frames;
+    assign(frames.count, count);
+    assign(frames.mix, read_choice<MotionMix>(map["mix"]));
+    if (count) render.motion_frames = frames;
+}
+
 std::optional<double> read_limit(const Field& field) {
     return is_word(field, "none") ? std::nullopt : read_number(field);
 }
@@ -129,6 +140,7 @@ RenderSpec read_render(const Section& shot) {
     read_bounces(section, render);
     read_filter(section, render);
     assign(render.motion_tolerance_px, read_number(section["motion_tolerance"]));
+    read_motion_frames(section, render);
     const Section clamp = section.section("clamp");
     render.clamp_direct = read_limit(clamp["direct"]);
     render.clamp_indirect = read_limit(clamp["indirect"]);

@@ -161,6 +161,18 @@ enum class DenoiserKind { none, oidn };
 /// How much work goes into acceleration structures: better ones take longer to build and less to trace.
 enum class BuildQuality { low, medium, high };
 
+/// How transforms between two motion frames are found.
+enum class MotionMix {
+    srt,     ///< scale, shear and translation linearly, rotation by slerp: what turns stays on its circle
+    matrix,  ///< matrices linearly: cheaper to trace, and cuts the corners of what turns
+};
+/// Motion frames of everything that moves in each part of the shutter, whatever the motion tolerance.
+struct FixedMotionFrames {
+    int count = 2;
+    MotionMix mix = MotionMix::srt;
+    bool operator==(const FixedMotionFrames&) const = default;
+};
+
 struct RenderSpec {
     SourceLocation integrator_where;
     Integrator integrator = Integrator::path;
@@ -183,6 +195,7 @@ struct RenderSpec {
     FilterKind filter = FilterKind::blackman_harris;
     double filter_width_px = 1.5;  ///< full width of the support
     double motion_tolerance_px = 0.1;
+    std::optional<FixedMotionFrames> motion_frames;  ///< absent: as few as keep the tolerance
     std::optional<double> clamp_direct, clamp_indirect;
     DenoiserKind denoise = DenoiserKind::none;
     SourceLocation denoise_where;

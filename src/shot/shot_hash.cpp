@@ -70,6 +70,8 @@ public:
         (*this)(r.integrator, r.samples, r.at_least, r.max_error, r.time_budget_s, r.time_budget_shot_s, r.bounces.total, r.bounces.diffuse, r.bounces.glossy, r.bounces.transmission,
                 r.filter, r.filter_width_px, r.motion_tolerance_px, r.clamp_direct, r.clamp_indirect, r.seed,
                 r.seed_animated, r.cull_backfaces, r.denoise, r.build, r.robust, r.texture_limit_px);
+        // Only where it is given: frames that were rendered without it stay.
+        if (r.motion_frames) (*this)(std::string("motion_frames"), r.motion_frames->count, r.motion_frames->mix);
     }
 };
 

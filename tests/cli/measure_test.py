@@ -85,7 +85,7 @@ class Measure(ProgramTest):
                     self.assertAlmostEqual(frame[name], value, delta=1e-5 * abs(value) + 1e-9, msg=f"{variant['axis']} {variant['value']} {name}")
 
     def test_refusals(self):
-        for arguments, message in ((("--sweep", "sample"), "--sweep names 'sample'"), (("--sweep", "device"), "the CPU is the only device"),
+        for arguments, message in ((("--sweep", "sample"), "--sweep names 'sample'"), (("--sweep", "devices"), "--sweep names 'devices'"),
                                    (("--size", "0x3"), "--size is '0x3'")):
             process = self.measure(*arguments, code=2)
             self.assertIn(message, process.err)

@@ -55,6 +55,29 @@ TEST(Motion, QuarterTurnKeepsItsRadius) {
     EXPECT_LT(most, 1.07);
 }
 
+TEST(Motion, MatricesOfAnyNumberAreMixedAsTheyAreTraced) {
+    // A sphere between three matrices: it goes there and back. Were shading to mix other ones than Embree, points would lie beside
+    // the surface and shadow rays begin within it. On the way its light is that of one that rests at each place.
+    const auto lit = [](const std::vector<glm::dmat4>& frames, bool mixed) {
+        SmallScene s;
+        s.add_moving(s.add_mesh(unit_sphere()), material({0.8f, 0.8f, 0.8f}, 0, 0.6f), frames);
+        s.snapshot.motion.linear.edit(0) = mixed ? 1 : 0;
+        kernels::Light sun;
+        sun.kind = kernels::LightKind::directional;
+        sun.radiance = {2, 2, 2};
+        sun.direction = {-0.3f, -0.5f, -0.8124f};
+        s.add_light(sun);
+        return s.render(64).mean();
+    };
+    const std::vector<glm::dmat4> there_and_back{place({0, 0, 0}), place({1, 0.5, 0}), place({0, 0, 0})};
+    EXPECT_NEAR(lit(there_and_back, true) / lit(there_and_back, false), 1, 1e-4);  // pure translations: both ways are the same
+    // Matrices mixed through a turn of 90 degrees shrink to 0.707 half-way: a shared edge of both tables would not.
+    const std::vector<glm::dmat4> turning{glm::dmat4(1), glm::rotate(glm::dmat4(1), kPi / 2, glm::dvec3(0, 0, 1)), glm::rotate(glm::dmat4(1), kPi, glm::dvec3(0, 0, 1))};
+    const double shrunk = lit(turning, true) / lit(turning, false);
+    EXPECT_LT(shrunk, 0.9);
+    EXPECT_GT(shrunk, 0.7);
+}
+
 TEST(Motion, EmbreeAndTheKernelsAgreeOnMovingNormals) {
     // A sphere that spins and slides looks like one that only slides: positions from our own interpolation lie on the
     // surface that Embree hit, or shadow rays would start inside it.

@@ -68,6 +68,7 @@ constexpr Place kPlaces[] = {
     {"render.bounces.", "render.bounces.#"},
     {"render.filter", "render.filter.#"},
     {"render.clamp", "render.clamp.#"},
+    {"render.motion_frames.count", "render.motion_frames", "{ count: @ }"},
     {"render.seed.value", "render.seed.value"},
     {"render", "render.#"},
     {"view.exposure.iso", "view.exposure", "{ iso: @, time: 10 ms, f_stop: 8 }"},

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "frame/decompose.h"
+#include "frame/motion_report.h"
 #include "stage.h"
 
 namespace kadr {
@@ -301,6 +302,66 @@ RC_GTEST_PROP(MotionFramesProperty, ErrorStaysWithinTheTolerance, ()) {
         RC_ASSERT(snapshot.motion.max_error_px <= 0.09);
     }
     RC_ASSERT(std::abs(weights - 1) < 1e-12);
+}
+
+/// A node that turns by so much in the shutter, half a metre from the axis.
+Stage turning(double degrees, FixedMotionFrames frames) {
+    Stage stage;
+    const int arm = stage.add_node("arm", -1, false);
+    stage.node(stage.add_node("hand", arm)).translation = {0.5, 0, 0};
+    stage.shot.scenes[0].transform.rotate.axis_angle = RotationTrack::AxisAngle{glm::dvec3(0, 0, 1), track<double>({{0, 0}, {1, glm::radians(degrees)}})};
+    stage.shot.render.motion_frames = frames;
+    return stage;
+}
+
+TEST(FixedMotionFrames, AreAsManyAsTheShotSays) {
+    for (const int count : {2, 3, 7, 129}) {
+        const Stage stage = turning(60, {count, MotionMix::srt});
+        const SceneSnapshot snapshot = stage.snapshot();
+        ASSERT_EQ(snapshot.motion.headers[0].frame_count, static_cast<unsigned>(count));
+        EXPECT_EQ(snapshot.motion.linear[0], 0);
+        EXPECT_FALSE(snapshot.motion.mixes_matrices);
+        EXPECT_NEAR(snapshot.motion.widest_step_rad, glm::radians(60.0) / (count - 1), 1e-9);
+        // Rotations follow the arc, places beside the axis the chord.
+        EXPECT_GE(1.05 * snapshot.motion.max_error_px + 1e-3, worst_error_px(stage, snapshot, 0, 1));
+    }
+    EXPECT_EQ(turning(0, {7, MotionMix::srt}).snapshot().motion.headers[0].frame_count, 1u);  // it does not move
+}
+
+TEST(FixedMotionFrames, OfMatricesSayHowFarTheyCutCorners) {
+    double before = 1e9;
+    for (const int count : {2, 3, 5, 9}) {
+        const Stage stage = turning(40, {count, MotionMix::matrix});
+        const SceneSnapshot snapshot = stage.snapshot();
+        EXPECT_EQ(snapshot.motion.linear[0], 1);
+        EXPECT_TRUE(snapshot.motion.mixes_matrices);
+        // Along every way, not only in the three places of a segment that the fit looks at; projected, where it has a bound.
+        const double true_px = worst_error_px(stage, snapshot, 0, 1), said_px = snapshot.motion.max_error_px;
+        EXPECT_GE(said_px, 0.95 * true_px) << count;
+        EXPECT_LE(said_px, 1.3 * true_px) << count;
+        EXPECT_NEAR(before / true_px, 4, count > 2 ? 0.5 : 1e9) << count;  // a chord is off by the square of its angle
+        before = true_px;
+    }
+}
+
+TEST(FixedMotionFrames, KeepTheShutterInOnePartAndReportWhatTheyMiss) {
+    Stage stage = turning(80, {3, MotionMix::matrix});
+    EXPECT_EQ(stage.snapshots().size(), 1u);
+    const BoundShot bound = stage.bind();
+    const MotionReport report = motion_report(bound, make_snapshots(bound, bound.sequence().frame(0)));
+    EXPECT_FALSE(report.met());
+    EXPECT_EQ(report.frames, 3u);
+    EXPECT_EQ(report.worst, "node 'stage/arm/hand'");
+    stage.shot.render.motion_frames.reset();
+    EXPECT_GE(stage.snapshot().motion.headers[0].frame_count, 9u);
+}
+
+TEST(FixedMotionFrames, ThatLeadTheWrongWayAreRefused) {
+    EXPECT_THAT(message_of([] { turning(200, {2, MotionMix::srt}).snapshots(); }),
+                testing::HasSubstr("node 'stage/arm/hand' turns by 200 degrees from one of the 2 motion frames (render.motion_frames) to the next in the shutter that opens"));
+    EXPECT_THAT(message_of([] { turning(175, {2, MotionMix::matrix}).snapshots(); }), testing::HasSubstr("take more frames, `mix: srt` or `motion_frames: auto`"));
+    EXPECT_EQ(message_of([] { turning(175, {2, MotionMix::srt}).snapshots(); }), "no error");
+    EXPECT_EQ(message_of([] { turning(200, {3, MotionMix::matrix}).snapshots(); }), "no error");
 }
 
 }  // namespace

@@ -412,6 +412,31 @@ TEST(HiprtDevice, ShearedMotionGoesByOurOwnMatrices) {
     EXPECT_EQ(gpu.complaints(), "");
 }
 
+TEST(HiprtDevice, MotionFramesThatHiprtTracesOtherwiseAreRefusedByName) {
+    FakeGpu gpu;
+    SmallScene s;
+    s.add_moving(s.add_mesh(unit_square()), material({1, 1, 1}, 0, 1), {place({0, 0, 0}), place({1, 0, 0})});
+    const auto refusal = [&] {
+        const std::unique_ptr<Device> device = gpu.make();
+        device->load(s.scene, nullptr);
+        try {
+            device->set_frame(s.snapshot);
+        } catch (const InputError& error) {
+            return error.diagnostics()[0].text();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal(), "");
+    s.snapshot.motion.mixes_matrices = true;
+    EXPECT_EQ(refusal(), "error: --device hiprt: render.motion_frames.mix is matrix, and HIPRT mixes no matrices\n  use `mix: srt`, or --device cpu");
+    s.snapshot.motion.mixes_matrices = false;
+    s.snapshot.motion.widest_step_rad = 0.35;
+    EXPECT_EQ(refusal(),
+              "error: --device hiprt: render.motion_frames lets something turn by 20 degrees from one frame to the next\n"
+              "  HIPRT's boxes hold what turns by 10 degrees; take more frames, `motion_frames: auto`, or --device cpu");
+    EXPECT_EQ(gpu.complaints(), "");
+}
+
 TEST(HiprtDevice, LaunchesAreShortAndCoverEverySampleOnce) {
     FakeGpu gpu;
     gpu.seconds_a_sample = 2e-6;  // 0.05 s are 25,000 samples: 10 launches for 512 x 512 pixels

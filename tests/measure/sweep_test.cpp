@@ -19,7 +19,7 @@ TEST(Sweep, StartsWithTheShotAndLeavesItsOwnValuesOut) {
     RenderSpec render;  // 8 bounces, 0.1 px, no clamps
     EXPECT_THAT(ids(plan_sweep(render, {}, kSmall)),
                 ::testing::ElementsAre("shot", "samples-4", "samples-64", "bounces-0", "bounces-1", "bounces-2", "bounces-4", "bounces-32", "integrator-direct",
-                                       "motion_tolerance-0.02px", "motion_tolerance-0.5px", "clamp-10", "clamp-3", "clamp-1", "denoise-oidn", "build-low", "build-high", "robust-true"));
+                                       "motion_tolerance-0.02px", "motion_tolerance-0.5px", "motion_frames-2srt", "motion_frames-2matrix", "motion_frames-5srt", "motion_frames-5matrix", "clamp-10", "clamp-3", "clamp-1", "denoise-oidn", "build-low", "build-high", "robust-true"));
     render.bounces = {4, 4, 4, 4};
     render.clamp_indirect = 3;
     EXPECT_THAT(ids(plan_sweep(render, {"bounces", "clamp"}, kSmall)),
@@ -72,12 +72,36 @@ std::string refusal(const std::string& list) {
     return "";
 }
 
-TEST(Sweep, RefusesWhatItCannotVary) {
-    EXPECT_EQ(refusal("samples,bouncs"), "error: --sweep names 'bouncs'\n  expected some of samples, bounces, integrator, motion_tolerance, clamp, denoise, texture, build, robust");
-    EXPECT_EQ(refusal("device"), "error: --sweep names 'device', which this Kadr has no choice in: the CPU is the only device\n"
-                                 "  expected some of samples, bounces, integrator, motion_tolerance, clamp, denoise, texture, build, robust");
+TEST(Sweep, RefusesWhatItDoesNotKnow) {
+    EXPECT_EQ(refusal("samples,bouncs"),
+              "error: --sweep names 'bouncs'\n  expected some of samples, bounces, integrator, motion_tolerance, motion_frames, clamp, denoise, texture, build, robust, device");
     EXPECT_EQ(parse_axes("clamp,samples,clamp"), (std::vector<std::string>{"clamp", "samples"}));
     EXPECT_TRUE(parse_axes("").empty());
+}
+
+TEST(Sweep, FixesTheNumberOfMotionFrames) {
+    SweepSize size = kSmall;
+    RenderSpec render;
+    render.motion_frames = {5, MotionMix::matrix};
+    const Sweep sweep = plan_sweep(render, {"motion_frames"}, size);
+    EXPECT_THAT(ids(sweep), ::testing::ElementsAre("shot", "motion_frames-auto", "motion_frames-2srt", "motion_frames-2matrix", "motion_frames-5srt"));
+    EXPECT_EQ(sweep.variants[2].set.front(), (std::pair<std::string, std::string>{"render.motion_frames", "{ count: 2, mix: srt }"}));
+    size.moves = false;
+    EXPECT_EQ(plan_sweep(render, {"motion_frames"}, size).left_out.at(0).reason, "nothing moves while the shutter is open, in the frames at hand");
+}
+
+TEST(Sweep, NamesTheDevicesThatItLeavesOut) {
+    SweepSize size = kSmall;
+    size.devices = {{"cpu", "", true}, {"hiprt", "no driver", false}};
+    Sweep sweep = plan_sweep(RenderSpec(), {"device"}, size);
+    EXPECT_THAT(ids(sweep), ::testing::ElementsAre("shot"));
+    ASSERT_EQ(sweep.left_out.size(), 2u);
+    EXPECT_EQ(sweep.left_out[0].what + ": " + sweep.left_out[0].reason, "device hiprt: no driver");
+    EXPECT_EQ(sweep.left_out[1].what, "device exact");
+    size.devices[1].missing.clear();
+    sweep = plan_sweep(RenderSpec(), {"device"}, size);
+    EXPECT_THAT(ids(sweep), ::testing::ElementsAre("shot", "device-hiprt"));
+    EXPECT_EQ(sweep.variants[1].device, "hiprt");
 }
 
 }  // namespace

@@ -351,6 +351,9 @@ TEST_F(RenderJobTest, WarnsOnceOfEveryThingThatStrays) {
     const std::vector<Diagnostic> split = warnings_with("samples: 2");
     ASSERT_FALSE(split.empty());
     EXPECT_THAT(split[0].expected, HasSubstr("in each of 2 parts of the shutter"));
+    const std::vector<Diagnostic> fixed = warnings_with("samples: 2, motion_frames: 3");
+    ASSERT_FALSE(fixed.empty());
+    EXPECT_EQ(fixed[0].expected, "render.motion_frames is 3; take more, or `motion_frames: auto` for as many as the tolerance asks for");
 }
 
 // Setting a part builds structures: a steered frame begins each round with the part that is set.

@@ -87,7 +87,7 @@ shots: [])"),
          R"(shot.yaml:4:11: error: unknown key 'colour' in render
     render: { colour: 4 }
               ^~~~~~
-  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
+  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
         {std::string(kBase) + R"(image: { size: [1, 2] }
 image: { size: [3, 4] })",
          R"(shot.yaml:5:1: error: duplicate key 'image'
@@ -118,7 +118,7 @@ image: { size: [3, 4] })",
          R"(shot.yaml:4:9: error: render is 5
     render: 5
             ^
-  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
+  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
         {std::string(kBase) + R"(render: { samples: { max_error: 2, at_least: 64, at_most: 32 } })",
          R"(shot.yaml:4:33: error: render.samples.max_error is 2
     render: { samples: { max_error: 2, at_least: 64, at_most: 32 } }
@@ -128,6 +128,25 @@ shot.yaml:4:46: error: render.samples.at_least is 64 and at_most 32
     render: { samples: { max_error: 2, at_least: 64, at_most: 32 } }
                                                  ^~
   expected at_least to be no more than at_most)"},
+        {std::string(kBase) + R"(render: { motion_frames: 1 })",
+         R"(shot.yaml:4:26: error: render.motion_frames is 1
+    render: { motion_frames: 1 }
+                             ^
+  expected a whole number from 2 to 129 or auto or a map of count, mix)"},
+        {std::string(kBase) + R"(render: { motion_frames: { count: 130, mix: lerp } })",
+         R"(shot.yaml:4:35: error: render.motion_frames.count is 130
+    render: { motion_frames: { count: 130, mix: lerp } }
+                                      ^~~
+  expected a whole number from 2 to 129
+shot.yaml:4:45: error: render.motion_frames.mix is 'lerp'
+    render: { motion_frames: { count: 130, mix: lerp } }
+                                                ^~~~
+  expected one of srt, matrix)"},
+        {std::string(kBase) + R"(render: { motion_frames: { mix: matrix } })",
+         R"(shot.yaml:4:26: error: render.motion_frames.count is missing
+    render: { motion_frames: { mix: matrix } }
+                             ^~~~~~~~~~~~~~~
+  add `count: 5`)"},
         {std::string(kBase) + R"(render: { samples: { at_most: 32 } })",
          R"(shot.yaml:4:20: error: render.samples has neither max_error nor time_budget
     render: { samples: { at_most: 32 } }

@@ -113,6 +113,8 @@ TEST_F(Loops, HashSeesWhatChangesPixelsAndNothingElse) {
                               "render: { seed: { animated: true } }",
                               "render: { cull_backfaces: true }",
                               "render: { motion_tolerance: 1 }",
+                              "render: { motion_frames: 5 }",
+                              "render: { motion_frames: { count: 5, mix: matrix } }",
                               "output: { aovs: [ depth ] }"}) {
         EXPECT_NE(hash_of(parse(other)), base) << other;
     }

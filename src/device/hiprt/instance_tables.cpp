@@ -1,12 +1,23 @@
 #include "device/hiprt/instance_tables.h"
 
 #include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 
 #include "base/error.h"
 #include "device/tables/motion_keys.h"
 
 namespace kadr {
 namespace {
+
+/// HIPRT takes matrices apart and turns what lies between them, and its boxes are good for steps of 10 degrees.
+void refuse_fixed_frames(const MotionFrames& motion) {
+    constexpr double kWidestStep = 0.17453292519943295 + 1e-9;
+    if (motion.mixes_matrices)
+        throw InputError("--device hiprt: render.motion_frames.mix is matrix, and HIPRT mixes no matrices", "use `mix: srt`, or --device cpu");
+    if (motion.widest_step_rad > kWidestStep)
+        throw InputError(fmt::format("--device hiprt: render.motion_frames lets something turn by {:.0f} degrees from one frame to the next", glm::degrees(motion.widest_step_rad)),
+                         "HIPRT's boxes hold what turns by 10 degrees; take more frames, `motion_frames: auto`, or --device cpu");
+}
 
 /// Where the kernels find an instance: HIPRT interpolates decomposed frames whatever their number, and shading has to
 /// use the transform that was traced, so matrices are for what is still.
@@ -56,6 +67,7 @@ void check_count(std::size_t shown) {
 
 InstanceTables make_instance_tables(const SceneSnapshot& snapshot,
                                     const std::function<ShownMesh(std::size_t instance)>& mesh_of) {
+    refuse_fixed_frames(snapshot.motion);
     InstanceTables tables;
     for (std::size_t i = 0; i < snapshot.instances.size(); ++i) {
         const SnapshotInstance& source = snapshot.instances[i];

@@ -49,7 +49,7 @@ kernels::Affine matrix_of(const kernels::FrameMatrix& frame) {
 
 bool is_linear(const MotionFrames& motion, std::size_t instance) {
     const unsigned count = motion.headers[instance].frame_count;
-    return count == 1 || (count == 2 && instance < motion.linear.size() && motion.linear[instance]);
+    return count == 1 || (instance < motion.linear.size() && motion.linear[instance]);
 }
 
 kernels::Affine matrix_at(const MotionFrames& motion, std::size_t instance, std::size_t frame) {

@@ -7,7 +7,7 @@ namespace kadr {
 
 // The motion frames of the snapshot as the kernels take them: matrices, or decomposed keys.
 
-/// Whether linearly interpolated matrices (one or two) meet the motion tolerance.
+/// Whether the instance is at rest, or between linearly interpolated matrices.
 bool is_linear(const MotionFrames& motion, std::size_t instance);
 kernels::Affine matrix_at(const MotionFrames& motion, std::size_t instance, std::size_t frame);
 kernels::TransformKey key_at(const MotionFrames& motion, std::size_t instance, std::size_t frame);
