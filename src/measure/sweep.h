@@ -13,7 +13,7 @@ struct Variant {
     std::string axis;   ///< "bounces"; "shot": the shot's own settings; "recommended": what the measurement advises
     std::string value;  ///< as one writes it: "4", "none", "0.5 px"; empty for the last two
     std::vector<std::pair<std::string, std::string>> set;  ///< over the shot: key paths and their values in YAML
-    std::string device;                                    ///< rendered on another one than the rest; empty: on the same
+    std::string device = {};                               ///< rendered on another one than the rest; empty: on the same
     /// A folder's name: "bounces-4", "motion_tolerance-0.5px".
     std::string id() const;
 };
@@ -42,7 +42,7 @@ struct SweepSize {
     bool quick = false;  ///< fewer values of each axis
     int largest_texture_px = 0;  ///< longest side of the shot's textures; 0: it has none
     bool moves = true;           ///< whether something moves while the shutter is open
-    std::vector<SweepDevice> devices;
+    std::vector<SweepDevice> devices = {};
 };
 
 /// The names that --sweep takes. @throws InputError  for an unknown name

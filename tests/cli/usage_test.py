@@ -3,8 +3,10 @@
 import json
 import os
 import pty
+import re
 import subprocess
 import unittest
+from pathlib import Path
 
 import program
 from program import ProgramTest
@@ -122,6 +124,9 @@ class Usage(ProgramTest):
         verbose = self.run_kadr("devices", "--verbose").out
         for line in report["gpu_needs"] + report["unproven_on_gpu"]:
             self.assertIn(line, verbose)
+        changelog = (Path(__file__).parents[2] / "CHANGELOG.md").read_text()
+        listed = re.search(r"- What no GPU has shown yet .*:\n((?:  - .*\n)+)", changelog).group(1)
+        self.assertEqual([line[4:] for line in listed.splitlines()], report["unproven_on_gpu"])
 
     def test_info(self):
         self.run_kadr("render", self.shot, "--frames", "1")
