@@ -74,8 +74,9 @@ TEST(Motion, MatricesOfAnyNumberAreMixedAsTheyAreTraced) {
     // Matrices mixed through a turn of 90 degrees shrink to 0.707 half-way: a shared edge of both tables would not.
     const std::vector<glm::dmat4> turning{glm::dmat4(1), glm::rotate(glm::dmat4(1), kPi / 2, glm::dvec3(0, 0, 1)), glm::rotate(glm::dmat4(1), kPi, glm::dvec3(0, 0, 1))};
     const double shrunk = lit(turning, true) / lit(turning, false);
-    EXPECT_LT(shrunk, 0.9);
-    EXPECT_GT(shrunk, 0.7);
+    // What the sphere covers is (1 - t)^2 + t^2 of itself, 2/3 on average; flatter as it is, it shows the sun other normals.
+    EXPECT_LT(shrunk, 2.0 / 3);
+    EXPECT_GT(shrunk, 0.6);
 }
 
 TEST(Motion, EmbreeAndTheKernelsAgreeOnMovingNormals) {
