@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "device/eye.h"
 #include "frame/instance_name.h"
-#include "kernels/camera/camera.h"
 #include "kernels/integrator/interaction.h"
 
 namespace kadr {
@@ -21,36 +21,10 @@ constexpr double kLeastCosine = 0.05;  ///< at grazing angles a ray's error runs
 constexpr int kAround = 8;
 
 glm::dvec3 to_glm(const kernels::Vec3<double>& v) { return {v.x, v.y, v.z}; }
-glm::dvec3 to_glm(const kernels::Vec3f& v) { return {v.x, v.y, v.z}; }
 
 bool same_ids(const SurfaceHit& a, const SurfaceHit& b) {
     return a.instance == b.instance && (!a.met() || a.primitive == b.primitive);
 }
-
-/// The camera as far as error bars ask.
-struct Eye {
-    explicit Eye(const SceneSnapshot& snapshot)
-        : key(snapshot.camera_keys.front()),
-          orthographic(snapshot.camera.orthographic),
-          width(snapshot.settings.width),
-          height(snapshot.settings.height) {
-        const kernels::Vec3f axis = kernels::rotate(
-            kernels::Quaternion<float>{key.rotation[0], key.rotation[1], key.rotation[2], key.rotation[3]}, {0, 0, -1});
-        forward = to_glm(axis);
-    }
-    double pixel_at(double distance) const {
-        return 2.0 * key.tan_half_height / height * (orthographic ? 1.0 : distance);
-    }
-    glm::dvec3 towards(const glm::dvec3& point) const {
-        const glm::dvec3 way = point - to_glm(key.position);
-        return orthographic || glm::length(way) == 0 ? forward : glm::normalize(way);
-    }
-
-    const kernels::CameraKey& key;
-    glm::dvec3 forward;
-    bool orthographic;
-    int width, height;
-};
 
 class Agreement {
 public:
@@ -114,7 +88,7 @@ private:
         error += kUlp * distance * distance;
         error += turning_error(hit);
         const double px =
-            error / eye_.pixel_at(distance) + kFewUlps * std::max(eye_.width, eye_.height) + motion_error_px_;
+            error / std::max(eye_.pixel_at(to_glm(hit.position)), 1e-30) + kFewUlps * std::max(eye_.width, eye_.height) + motion_error_px_;
         return std::min(px, kWidestBar_px);
     }
 
@@ -149,7 +123,7 @@ private:
     double bar_along(const SurfaceHit& hit) {
         const double cosine =
             std::clamp(std::abs(glm::dot(eye_.towards(to_glm(hit.position)), to_glm(hit.normal))), kLeastCosine, 1.0);
-        const double across = note_bar(hit) * eye_.pixel_at(hit.distance_m);
+        const double across = note_bar(hit) * eye_.pixel_at(to_glm(hit.position));
         return across / cosine;
     }
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "device/eye.h"
 #include "kernels/sampler/sobol.h"
 #include "kernels/sampler/warp.h"
 
@@ -50,19 +50,6 @@ template <class Members, class Value>
 bool agree(const Members& members, const Value& value) {
     return std::all_of(members.begin(), members.end(), [&](const auto& member) { return value(member) == value(members.front()); });
 }
-
-/// The camera's place and the size of a pixel at unit distance along its axis.
-struct Eye {
-    explicit Eye(const SceneSnapshot& snapshot) : key(snapshot.camera_keys.front()), orthographic(snapshot.camera.orthographic), height(snapshot.settings.height) {}
-    double pixel_at(double distance_m) const { return 2.0 * key.tan_half_height / height * (orthographic ? 1.0 : distance_m); }
-    glm::dvec3 place() const {
-        const glm::dquat rotation(key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
-        return glm::dvec3(key.position.x, key.position.y, key.position.z) + rotation * glm::dvec3(0, 0, key.start);
-    }
-    const kernels::CameraKey& key;
-    bool orthographic;
-    int height;
-};
 
 class Comparison {
 public:
@@ -106,13 +93,13 @@ private:
         const double across = glm::length(off - along * glm::dot(off, along));
         const glm::dvec3 p = glm::abs(to_glm(truth.position));
         const double largest = std::max({p.x, p.y, p.z, 1e-300});
-        figures_.position_error_px = std::max(figures_.position_error_px, across / eye_.pixel_at(truth.distance_m));
+        figures_.position_error_px = std::max(figures_.position_error_px, across / std::max(eye_.pixel_at(to_glm(truth.position)), 1e-30));
         figures_.position_error_ulp = std::max(figures_.position_error_ulp, glm::length(off) / (largest * 0x1p-23));
     }
 
     glm::dvec3 to_viewer(const SurfaceHit& hit) const {
         if (eye_.orthographic) return to_glm(hit.normal);
-        const glm::dvec3 to_camera = eye_.place() - to_glm(hit.position);
+        const glm::dvec3 to_camera = eye_.place - to_glm(hit.position);
         const double distance = glm::length(to_camera);
         return distance > 0 ? to_camera / distance : to_glm(hit.normal);
     }
