@@ -10,7 +10,6 @@
 #include "device/tables/least_green.h"
 #include "frame/bindings.h"
 #include "frame/camera_keys.h"
-#include "kernels/bsdf/ggx.h"
 #include "render/denoising.h"
 #include "render/track_list.h"
 
@@ -272,13 +271,6 @@ private:
         }
     }
 
-    /// At some point of it.
-    bool is_mirror(const kernels::Material& m) const {
-        const int texture = m.metallic_roughness_texture.texture;
-        const float roughness = texture < 0 ? m.roughness : m.roughness * least_green(shot_.scene().textures[index(texture)]);
-        return roughness * roughness < kernels::kMinAlpha;
-    }
-
     void add_looks(const kernels::Material& m, bool emits, const std::string& name) {
         if (m.alpha_mode == kernels::AlphaMode::mask) askers_.add(Feature::alpha_mask, name);
         if (m.alpha_mode == kernels::AlphaMode::blend) askers_.add(Feature::alpha_blend, name);
@@ -288,7 +280,7 @@ private:
         if (m.metallic < 1 || textured) askers_.add(Feature::dielectric, name);
         if (m.dielectric_f0 != kernels::kDielectricF0) askers_.add(Feature::index_of_refraction, name);
         if (m.metallic > 0) askers_.add(Feature::metallic, name);
-        if (shot_.shot().render.integrator == Integrator::path && is_mirror(m)) askers_.add(Feature::mirror, name);
+        if (shot_.shot().render.integrator == Integrator::path && is_mirror(m, [&](int texture) { return least_green(shot_.scene().textures[index(texture)]); })) askers_.add(Feature::mirror, name);
         if (textured) askers_.add(Feature::texture_metallic_roughness, name);
         if (m.normal_texture.texture >= 0) askers_.add(Feature::texture_normal, name);
         if (emits && m.emissive_texture.texture >= 0) askers_.add(Feature::texture_emissive, name);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "kernels/bsdf/ggx.h"
 #include "kernels/texture/texture.h"
 
 namespace kadr {
@@ -39,6 +40,14 @@ float least_green(const TextureData& texture) {
     if (texture.texels.empty()) return 1;  // nothing that is shown wears it, so it was not read
     const int place = place_of_least(texture);
     return kernels::fetch_texel(texture.view(), place % texture.width, place / texture.width).y;
+}
+
+bool is_mirror(const kernels::Material& material, const std::function<float(int)>& least) {
+    if (material.unlit) return false;
+    constexpr float kRounding = 1 - 1e-5f;  // of a lookup between texels
+    const int texture = material.metallic_roughness_texture.texture;
+    const float roughness = kRounding * material.roughness * (texture < 0 ? 1 : least(texture));
+    return roughness * roughness < kernels::kMinAlpha;
 }
 
 }  // namespace kadr

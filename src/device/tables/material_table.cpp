@@ -1,24 +1,11 @@
 #include "device/tables/material_table.h"
 
 #include "device/tables/least_green.h"
-#include "kernels/bsdf/ggx.h"
 
 namespace kadr {
 namespace {
 
 bool is_zero(const kernels::Vec3f& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
-
-/// The kernels::requirement bits of how a material reflects.
-/// @param least_roughness  at any point of it
-unsigned needs_of_lobe(const kernels::Material& m, float least_roughness) {
-    using namespace kernels::requirement;
-    if (m.unlit) return 0;
-    constexpr float kRounding = 1 - 1e-5f;  // of a lookup between texels
-    const float roughness = least_roughness * kRounding;
-    unsigned needs = roughness * roughness < kernels::kMinAlpha ? kMirrors : 0;
-    if (m.dielectric_f0 != kernels::kDielectricF0) needs |= kIor;
-    return needs;
-}
 
 /// The kernels::requirement bits of what a material is covered with.
 unsigned needs_of_maps(const kernels::Material& m) {
@@ -69,16 +56,18 @@ void MaterialTable::note_shown(const SceneSnapshot& snapshot, std::span<const ke
     }
 }
 
-float MaterialTable::least_roughness(const kernels::Material& material) const {
-    const int texture = material.metallic_roughness_texture.texture;
-    return texture < 0 ? material.roughness : material.roughness * *least_green_[static_cast<std::size_t>(texture)];
+/// The kernels::requirement bits of how a material reflects.
+unsigned MaterialTable::needs_of_lobe(const kernels::Material& m) const {
+    using namespace kernels::requirement;
+    const bool mirror = is_mirror(m, [this](int texture) { return *least_green_[static_cast<std::size_t>(texture)]; });
+    return (mirror ? kMirrors : 0) | (!m.unlit && m.dielectric_f0 != kernels::kDielectricF0 ? kIor : 0);
 }
 
 unsigned MaterialTable::requirements() const {
     unsigned needs = shows_colors_ ? kernels::requirement::kMaps | kernels::requirement::kSpecials : 0;
     for (const unsigned material : shown_) {
         const kernels::Material& m = data()[material];
-        needs |= needs_of_maps(m) | needs_of_lobe(m, least_roughness(m));
+        needs |= needs_of_maps(m) | needs_of_lobe(m);
     }
     return needs;
 }

@@ -31,8 +31,7 @@ public:
     unsigned requirements() const;
 
 private:
-    /// At any point of a material that is shown.
-    float least_roughness(const kernels::Material& material) const;
+    unsigned needs_of_lobe(const kernels::Material& shown) const;
 
     const Scene& scene_;
     std::vector<kernels::Material> materials_;  ///< of the snapshot; empty: the scene's
