@@ -83,7 +83,11 @@ public:
         stages_ = true;
         memory_.forget_steps();
         with_memory("the scene",
-                    [&] { scene_ = std::make_unique<HiprtScene>(scene, environment, builder_, scene_uploads_, kernels_); });
+                    [&] {
+                        scene_ = std::make_unique<HiprtScene>(
+                            scene, environment, builder_, scene_uploads_,
+                            [this](kernels::Kernel kernel) { return kernels_.get({kernel, 0, false}, waiting()).function; });
+                    });
         if (build.quality == BuildQuality::low)
             while (scene_->quality() != StructureQuality::fast) scene_->lower_quality();
         scene_stream_.synchronize("copy the scene to the GPU");

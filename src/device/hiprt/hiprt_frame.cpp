@@ -15,8 +15,7 @@ HiprtFrame::HiprtFrame(SharedTables& shared)
       uploads_(shared.uploads),
       memory_(shared.builder.memory()),
       rigid_(shared.rigid),
-      bending_(shared.scene, shared.builder, shared.uploads,
-               [&shared](kernels::Kernel kernel) { return shared.kernels.get({kernel, 0, false}).function; }),
+      bending_(shared.scene, shared.builder, shared.uploads, shared.bending_kernel),
       materials_(shared.scene) {}
 
 void HiprtFrame::set(const SceneSnapshot& given) {

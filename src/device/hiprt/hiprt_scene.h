@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "device/hiprt/hiprt_frame.h"
 
@@ -10,10 +11,10 @@ namespace kadr {
 class HiprtScene {
 public:
     /// @param environment  the linear R, G, B of the environment's image; null: none
-    /// @param kernels      compiles those that make the vertices of bending meshes
+    /// @param bending_kernel  of the kernels that make the vertices of bending meshes; compiles them when asked first
     HiprtScene(const Scene& scene, const Image* environment, StructureBuilder& builder, UploadQueue& uploads,
-               TraceKernels& kernels)
-        : shared_(scene, environment, builder, uploads, kernels), current_(std::make_unique<HiprtFrame>(shared_)) {}
+               GpuBender::KernelOf bending_kernel)
+        : shared_(scene, environment, builder, uploads, std::move(bending_kernel)), current_(std::make_unique<HiprtFrame>(shared_)) {}
 
     /// What is staged takes its turn where it is this snapshot, the very object; else the frame at hand becomes it, and
     /// what is staged stays. On the stream of the builder, without waiting. No launch may be on its way. After an

@@ -1,11 +1,13 @@
 #include "device/hiprt/shared_tables.h"
 
+#include <utility>
+
 namespace kadr {
 
 /// Textures as they are, so that the kernels filter them as on the CPU.
 SharedTables::SharedTables(const Scene& all, const Image* image, StructureBuilder& builder_of_all, UploadQueue& queue,
-                           TraceKernels& compiler)
-    : scene(all), builder(builder_of_all), uploads(queue), kernels(compiler), rigid(all, builder_of_all, queue) {
+                           GpuBender::KernelOf kernel)
+    : scene(all), builder(builder_of_all), uploads(queue), bending_kernel(std::move(kernel)), rigid(all, builder_of_all, queue) {
     if (image) environment = EnvironmentTables(*image);
     GpuMemory& memory = builder.memory();
     std::vector<kernels::Texture> on_gpu;

@@ -5,7 +5,7 @@
 
 #include "device/hiprt/device_table.h"
 #include "device/hiprt/rigid_meshes.h"
-#include "device/hiprt/trace_kernels.h"
+#include "device/hiprt/gpu_bender.h"
 #include "device/tables/environment_tables.h"
 #include "film/film.h"
 
@@ -16,12 +16,12 @@ namespace kadr {
 struct SharedTables {
     /// @param image  the linear R, G, B of the environment's image; null: none  @throws GpuOutOfMemory
     SharedTables(const Scene& scene, const Image* image, StructureBuilder& builder, UploadQueue& uploads,
-                 TraceKernels& kernels);
+                 GpuBender::KernelOf bending_kernel);
 
     const Scene& scene;
     StructureBuilder& builder;
     UploadQueue& uploads;
-    TraceKernels& kernels;
+    const GpuBender::KernelOf bending_kernel;
     RigidMeshes rigid;
     EnvironmentTables environment;
     std::vector<kernels::Texture> host_textures;  ///< with addresses of the host
