@@ -116,6 +116,19 @@ TEST(MotionFrames, AStraightPathIsTwoLinearFrames) {
     EXPECT_LT(snapshot.motion.max_error_px, 1e-9);
 }
 
+/// Slerp would follow the turn exactly; what a device may take instead cuts its corner, and that is what is said.
+TEST(MotionFrames, ASmallTurnIsAsFarOffAsLinearMatricesAre) {
+    Stage stage;
+    stage.animate(stage.add_node("a")).rotation = track<glm::dquat>({{0, test::turn(0)}, {1, test::turn(0.5)}});
+    const SceneSnapshot snapshot = stage.snapshot();
+    ASSERT_EQ(snapshot.motion.linear[0], 1);
+    // Corners of [-1, 1]^3 are sqrt(2) from the axis and seen from 4 to 6 m; half-way they are 1 - cos of a quarter of the turn nearer.
+    const double turned = 0.25 * glm::radians(0.5 * (snapshot.close_s - snapshot.open_s)), off = std::sqrt(2.0) * (1 - std::cos(2 * turned));
+    const double pixel = 2.0 * snapshot.camera_keys[0].tan_half_height / stage.shot.image.height;
+    EXPECT_GT(snapshot.motion.max_error_px, 0.5 * off / (6 * pixel));
+    EXPECT_LT(snapshot.motion.max_error_px, 2 * off / (4 * pixel));
+}
+
 TEST(MotionFrames, FollowAQuarterTurnWithinTheTolerance) {
     for (const double degrees : {5.0, 45.0, 90.0, 170.0, 500.0, 1200.0}) {
         Stage stage;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "render/environment_image.h"
 #include "render/fake_device.h"
 #include "render/loaded_shot.h"
 #include "render/pilot_mask.h"
@@ -57,6 +58,26 @@ TEST_F(ShotPilotTest, LooksAtAFewPixelsOfEveryFrame) {
     EXPECT_THAT(of(frames, is_free), testing::Each(false));
     // But for the first round of one frame, which tells how far that is from a whole one: two halves.
     EXPECT_EQ(std::count_if(fake_device().passes.begin(), fake_device().passes.end(), [](const Pass& pass) { return !pass.active; }), 2);
+}
+
+/// The first frame of a budget asks for its target after each of its rounds, and ends at the one that it is told last.
+TEST_F(ShotPilotTest, AFrameWhoseTargetIsRevisedFollowsIt) {
+    const LoadedShot loaded = load("[32, 32]");
+    FrameRenderer renderer(*device_, [this] { return now_; });
+    load_device(*device_, loaded);
+    std::vector<double> reached;
+    FrameTarget target{1e9, 1e9, {}};  // as it stands, one round is enough
+    target.revise = [&](double, double relmse) {
+        reached.push_back(relmse);
+        return FrameTarget{reached.front() / 16, 1e9, {}};
+    };
+    FrameRequest request;
+    request.target = target;
+    const RenderedFrame frame = renderer.render(loaded.bound(), loaded.bound().sequence().frame(0), request);
+    EXPECT_GE(reached.size(), 2u);
+    EXPECT_GE(frame.sampling.mean, 2.0 * SampleSteering::kTimingRound);
+    request.target->revise = {};
+    EXPECT_EQ(renderer.render(loaded.bound(), loaded.bound().sequence().frame(0), request).sampling.mean, SampleSteering::kTimingRound);
 }
 
 TEST_F(ShotPilotTest, TheMaskMissesNoRowAndNoColumn) {
