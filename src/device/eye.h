@@ -17,6 +17,7 @@ struct Eye {
         const glm::dquat rotation(key.rotation[3], key.rotation[0], key.rotation[1], key.rotation[2]);
         forward = rotation * glm::dvec3(0, 0, -1);
         // Rays of a long lens start in front of the camera, and that is the place that its key has.
+        starts_at_camera = key.start == 0;
         place = glm::dvec3(key.position.x, key.position.y, key.position.z) - static_cast<double>(key.start) * forward;
         pixel_at_one = 2.0 * key.tan_half_height / height;
     }
@@ -31,6 +32,7 @@ struct Eye {
     glm::dvec3 place, forward;
     double pixel_at_one = 0;  ///< at unit distance; of an orthographic camera everywhere
     bool orthographic;
+    bool starts_at_camera = true;  ///< rays of devices in float; those of the reference always do
     int width, height;
 };
 

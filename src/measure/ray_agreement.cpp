@@ -115,8 +115,9 @@ private:
 
     /// Whether both hits are in one place: along the ray, and where the triangle's corners and the weights put it.
     bool same_place(const SurfaceHit& a, const SurfaceHit& b) {
-        const double off =
-            std::max(std::abs(a.distance_m - b.distance_m), glm::length(to_glm(a.position) - to_glm(b.position)));
+        // Where rays start is a device's own business: only from the camera can their lengths be compared.
+        const double along = eye_.starts_at_camera ? std::abs(a.distance_m - b.distance_m) : 0;
+        const double off = std::max(along, glm::length(to_glm(a.position) - to_glm(b.position)));
         if (same_ids(a, b)) result_.place_error = std::max(result_.place_error, off / std::max(a.distance_m, 1e-30));
         return off <= std::min(bar_along(a), bar_along(b));
     }
@@ -167,7 +168,7 @@ private:
         if (!hit.met()) return {};
         const SnapshotInstance& instance = snapshot_.instances[static_cast<std::size_t>(hit.instance)];
         return {true, node_path_of(shot_, instance), shot_.scene().geometries[instance.geometry].name, hit.primitive,
-                hit.distance_m * snapshot_.unit_m};
+                (eye_.orthographic ? hit.distance_m : glm::distance(to_glm(hit.position), eye_.place)) * snapshot_.unit_m};
     }
 
     const BoundShot& shot_;

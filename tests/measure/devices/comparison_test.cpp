@@ -96,6 +96,15 @@ TEST(CompareDevices, TheReferenceInDoubleIsTheSame) {
     EXPECT_EQ(comparison.frames[0].rays.wrong(), 0u);
 }
 
+/// Rays of a lens as long start just before the subject on the processor, and at the camera in the reference.
+TEST(CompareDevices, TheReferenceIsTheSameThroughALongLens) {
+    Parity parity;
+    parity.options.devices = {"cpu", "exact"};
+    parity.options.render.overrides.frames = "0";
+    parity.options.render.overrides.set = {{"camera.position", "[0, 100, 20000]"}, {"camera.focal_length", "null"}, {"camera.vertical_fov", "0.006 deg"}};
+    expect_same(parity.run());
+}
+
 TEST(CompareDevices, AGpuThatTracesIsTheSame) {
     TracingGpu gpu;
     Parity parity;
