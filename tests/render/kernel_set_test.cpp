@@ -4,31 +4,21 @@
 #include <gmock/gmock.h>
 
 #include "device/embree/frame_facts.h"
-#include "frame/stage.h"
 #include "kernels/scene/scene_view.h"
+#include "render/plain_stage.h"
 
 namespace kadr {
 namespace {
 
 using namespace kernels::requirement;
-using test::Stage;
 using test::track;
 
 /// A triangle in front of the camera, no lights, black environment.
-struct Triangle : Stage {
+struct Triangle : test::PlainStage {
     Triangle() {
-        shot.timing.frames = {0, 1};
-        shot.shutter = {0, 0.5};
-        shot.environment.given = true;
-        ball = add_node("Ball");
-        scene.material_names = {"paint"};
-        scene.material_sources.resize(1);
-        GeometryData& geometry = scene.geometries[0];
-        geometry.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        geometry.indices = {0, 1, 2};
+        geometry().positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        geometry().indices = {0, 1, 2};
     }
-    int ball;
-    kernels::Material& material() { return scene.materials[0]; }
     GeometryData& geometry() { return scene.geometries[0]; }
 };
 

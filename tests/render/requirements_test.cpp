@@ -2,27 +2,15 @@
 
 #include <gmock/gmock.h>
 
-#include "frame/stage.h"
+#include "render/plain_stage.h"
 
 namespace kadr {
 namespace {
 
-using test::Stage;
 using test::track;
 using testing::IsEmpty;
 
-/// A node in front of the camera, closed shutter, no lights, black environment.
-struct Plain : Stage {
-    Plain() {
-        shot.timing.frames = {0, 1};
-        shot.shutter = {0, 0.5};
-        shot.environment.given = true;
-        ball = add_node("Ball");
-        scene.material_names = {"paint"};
-        scene.material_sources.resize(1);
-    }
-    int ball;
-    kernels::Material& material() { return scene.materials[0]; }
+struct Plain : test::PlainStage {
     RequirementSet needs() const {
         const BoundShot bound = bind();
         return requirements_of(bound);
