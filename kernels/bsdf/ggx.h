@@ -49,12 +49,4 @@ SHARED_FN Vec3<F> sample_visible_normal(Vec3<F> wo, F alpha, F sin_phi, F cos_ph
     return normalize(h);
 }
 
-/// (1 - x)^5 of Schlick's Fresnel term.
-template <class F>
-SHARED_FN F schlick_weight(F x) {
-    const F m = saturate(F(1.0f) - x);
-    const F m2 = m * m;
-    return m2 * m2 * m;
-}
-
 }  // namespace kadr::kernels

@@ -40,7 +40,8 @@ SHARED_FN DirectResult<F> shade_direct(const SceneFor<F>& scene, const PathState
             sample_light(keys, scene.lights.key_count[i], path.time, it.origin, Vec2<F>{F(0.5f), F(0.5f)});
         const F cosine = max(dot(it.shading_normal, light.direction), F(0.0f));
         const Vec3<F> f =
-            analytic_brdf(it.base_color, it.metallic, it.roughness, it.dielectric_f0, it.shading_normal, wo, light.direction);
+            analytic_brdf<R>(it.base_color, it.metallic, it.roughness, it.dielectric_f0, it.shading_normal, wo, light.direction,
+                             scene.settings.exact_fresnel);
         ShadowRay<F> ray;
         ray.origin = it.origin;
         ray.direction = light.direction;

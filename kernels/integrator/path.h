@@ -372,7 +372,6 @@ struct VertexResult {
 template <class F, unsigned R>
 SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>& path, const Hit<F>& hit,
                                     Mask<F> active) {
-    constexpr bool kMirrors = (R & requirement::kMirrors) != 0;
     const Settings& settings = scene.settings;
     const Vec3<F> zero{F(0.0f), F(0.0f), F(0.0f)};
     const Vec3<F> wo = -path.direction;
@@ -396,7 +395,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
 
     const Frame<F> frame(it.shading_normal);
     const Vec3<F> wo_local = frame.to_local(wo);
-    const Bsdf<F> bsdf = make_bsdf<kMirrors>(it.base_color, it.metallic, it.roughness, wo_local.z, it.dielectric_f0);
+    const Bsdf<F> bsdf = make_bsdf<R>(it.base_color, it.metallic, it.roughness, wo_local.z, it.dielectric_f0, settings.exact_fresnel);
     result.albedo = it.base_color;
     result.normal = it.shading_normal;
 
@@ -408,7 +407,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
     const ChosenLight<F> light = choose_light<F, R>(scene, it.origin, it.shading_normal, path.time, choice.y,
                                                     sampler.get_2d(base + UInt<F>(dimension::kLight)), active);
     const Vec3<F> wi_local = frame.to_local(light.direction);
-    const BsdfValue<F> value = evaluate_bsdf<kMirrors>(bsdf, wo_local, wi_local);
+    const BsdfValue<F> value = evaluate_bsdf<R>(bsdf, wo_local, wi_local);
     F weight(1.0f);
     if constexpr ((R & requirement::kEmitters) != 0)
         weight = select(light.delta, F(1.0f), mis_weight(light.pdf, value.pdf));
@@ -422,7 +421,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
 
     // The next ray.
     const BsdfSample<F> sample =
-        sample_bsdf<kMirrors>(bsdf, wo_local, sampler.get_2d(base + UInt<F>(dimension::kBsdf)), choice.x);
+        sample_bsdf<R>(bsdf, wo_local, sampler.get_2d(base + UInt<F>(dimension::kBsdf)), choice.x);
     const Vec3<F> wi = normalize(frame.to_world(sample.wi));
     result.next = path;
     result.next.origin = it.origin;
@@ -439,7 +438,7 @@ SHARED_FN VertexResult<F> shade_hit(const SceneFor<F>& scene, const PathState<F>
                below((path.bounces >> 8) & UInt<F>(0xffu), static_cast<unsigned>(settings.max_diffuse)));
     const F brightest = max_component(result.next.beta);
     Mask<F> sampled = sample.pdf > F(0.0f);
-    if constexpr (kMirrors) sampled = sampled | (sample.glossy & (bsdf.alpha == F(0.0f)));  // a delta has no density
+    if constexpr ((R & requirement::kMirrors) != 0) sampled = sampled | (sample.glossy & (bsdf.alpha == F(0.0f)));  // a delta has no density
     active = active & sampled & (brightest > F(0.0f)) & (dot(wi, it.geometric_normal) > F(0.0f));
 
     // Russian roulette by the square root of the throughput; the kept paths carry more. The first bounce is spared: it

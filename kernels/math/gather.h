@@ -27,6 +27,14 @@ SHARED_FN Vec3<F> gather_vec3(const T* table, Int<F> index) {
     return {gather(table, index), gather(table + 1, index), gather(table + 2, index)};
 }
 
+/// Bilinear look-up in rows of `width` entries: `at` is the lower left entry, fx and fy the place between entries.
+template <class F>
+SHARED_FN F table_bilinear(const float* table, int width, Int<F> at, F fx, F fy) {
+    const F low = lerp<F>(gather(table, at), gather(table + 1, at), fx);
+    const F high = lerp<F>(gather(table + width, at), gather(table + width + 1, at), fx);
+    return lerp(low, high, fy);
+}
+
 /// i limited to [low, high] (wide.h has min and max for floats only).
 template <class F>
 SHARED_FN Int<F> clamp_index(Int<F> i, int low, int high) {

@@ -143,6 +143,7 @@ struct Settings {
     unsigned seed = 0;                           ///< already mixed with the frame's number where the seed is animated
     float clamp_direct = 0, clamp_indirect = 0;  ///< 0: none
     bool cull_backfaces = false;
+    bool exact_fresnel = false;  ///< dielectrics reflect by Fresnel's equations; otherwise by Schlick's term
     bool transparent_background = false;
 };
 

@@ -148,6 +148,7 @@ kernels::Settings settings_of(const Shot& shot, int frame) {
     settings.clamp_direct = static_cast<float>(render.clamp_direct.value_or(0));
     settings.clamp_indirect = static_cast<float>(render.clamp_indirect.value_or(0));
     settings.cull_backfaces = render.cull_backfaces;
+    settings.exact_fresnel = render.fresnel == FresnelKind::exact;
     settings.transparent_background = !shot.environment.visible;
     return settings;
 }

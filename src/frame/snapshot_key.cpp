@@ -47,8 +47,8 @@ public:
         (*this)(places, camera, deformed);
     }
     void add(const kernels::Settings& settings) {
-        const auto& [integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, transparent] = settings;
-        (*this)(integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, transparent);
+        const auto& [integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, fresnel, transparent] = settings;
+        (*this)(integrator, filter, radius, width, height, bounces, diffuse, glossy, seed, direct, indirect, cull, fresnel, transparent);
     }
     void add(const kernels::Shutter& shutter) {
         const auto& [plain, direction, weight, first_open, delay, length, passed] = shutter;

@@ -85,6 +85,7 @@ void add_settings(Metadata& metadata, const RenderSpec& render) {
     metadata["build"] = word_of("render.build", render.build);
     metadata["robust"] = render.robust ? (*render.robust ? "yes" : "no") : "auto";
     metadata["texture_limit_px"] = render.texture_limit_px > 0 ? std::to_string(render.texture_limit_px) : "none";
+    metadata["fresnel"] = word_of("render.fresnel", render.fresnel);
     const Denoiser* denoiser = denoiser_of(render);
     metadata["denoise"] = word_of("render.denoise", render.denoise) + (denoiser ? " " + denoiser->version() : "");
     metadata["seed"] = std::to_string(render.seed) + (render.seed_animated ? ", animated" : "");

@@ -36,6 +36,7 @@ constexpr FeatureInfo kFeatures[] = {
     {Feature::second_uv_set, "geometry", "second texture coordinates", "meshes"},
     {Feature::dielectric, "materials", "dielectric", "materials"},
     {Feature::index_of_refraction, "materials", "index of refraction", "materials"},
+    {Feature::exact_fresnel, "materials", "Fresnel's equations", "settings"},
     {Feature::metallic, "materials", "metallic", "materials"},
     {Feature::mirror, "materials", "smoother than roughness 0.032", "materials"},
     {Feature::unlit, "materials", "unlit", "materials"},
@@ -277,7 +278,9 @@ private:
         if (m.base_color_texture.texture >= 0) askers_.add(Feature::texture_base_color, name);
         if (m.unlit) return askers_.add(Feature::unlit, name);
         const bool textured = m.metallic_roughness_texture.texture >= 0;
-        if (m.metallic < 1 || textured) askers_.add(Feature::dielectric, name);
+        const bool dielectric = m.metallic < 1 || textured;
+        if (dielectric) askers_.add(Feature::dielectric, name);
+        if (dielectric && shot_.shot().render.fresnel == FresnelKind::exact) askers_.add(Feature::exact_fresnel, "render.fresnel");
         if (m.dielectric_f0 != kernels::kDielectricF0) askers_.add(Feature::index_of_refraction, name);
         if (m.metallic > 0) askers_.add(Feature::metallic, name);
         if (shot_.shot().render.integrator == Integrator::path && is_mirror(m, [&](int texture) { return least_green(shot_.scene().textures[index(texture)]); })) askers_.add(Feature::mirror, name);

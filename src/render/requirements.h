@@ -30,6 +30,7 @@ enum class Feature {
     second_uv_set,
     dielectric,
     index_of_refraction,
+    exact_fresnel,
     metallic,
     mirror,
     unlit,

@@ -150,6 +150,7 @@ RenderSpec read_render(const Section& shot) {
     assign(render.build, read_choice<BuildQuality>(section["build"]));
     if (const Field robust = section["robust"]; robust && !is_word(robust, "auto")) render.robust = read_boolean(robust);
     read_texture_limit(section["texture_limit"], render);
+    assign(render.fresnel, read_choice<FresnelKind>(section["fresnel"]));
     read_seed(section, render);
     assign(render.cull_backfaces, read_boolean(section["cull_backfaces"]));
     return render;

@@ -173,6 +173,9 @@ struct FixedMotionFrames {
     bool operator==(const FixedMotionFrames&) const = default;
 };
 
+/// How dielectrics reflect: kernels/bsdf/fresnel.h.
+enum class FresnelKind { schlick, exact };
+
 struct RenderSpec {
     SourceLocation integrator_where;
     Integrator integrator = Integrator::path;
@@ -202,6 +205,7 @@ struct RenderSpec {
     BuildQuality build = BuildQuality::medium;
     std::optional<bool> robust;   ///< rays cannot slip between triangles that share an edge; absent: where they would too often (slipping.h)
     int texture_limit_px = 0;     ///< larger textures are halved until they fit; 0: as they are
+    FresnelKind fresnel = FresnelKind::schlick;
     std::string quality;          ///< the step of the ladder (quality.h) that filled in what was not given; empty: none
     std::uint32_t seed = 0;
     bool seed_animated = false;

@@ -72,6 +72,7 @@ public:
                 r.seed_animated, r.cull_backfaces, r.denoise, r.build, r.robust, r.texture_limit_px);
         // Only where it is given: frames that were rendered without it stay.
         if (r.motion_frames) (*this)(std::string("motion_frames"), r.motion_frames->count, r.motion_frames->mix);
+        if (r.fresnel != FresnelKind::schlick) (*this)(std::string("fresnel"), r.fresnel);
     }
 };
 

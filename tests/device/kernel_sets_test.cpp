@@ -58,7 +58,7 @@ TEST_P(KernelSets, LeaveTheSamePixelsAsTheLargestOne) {
 }
 
 TEST_P(KernelSets, LeaveTheSamePixelsInScenesOfRandomFeatures) {
-    constexpr unsigned kScenes = 200;
+    constexpr unsigned kScenes = 300;
     std::set<unsigned> used;
     for (unsigned seed = 1; seed <= kScenes; ++seed) {
         RandomScene random(seed, integrator());

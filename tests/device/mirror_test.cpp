@@ -147,11 +147,12 @@ TEST_P(Mirror, LeavesTheBaseItsLight) {
     }
 }
 
-unsigned needs_of(const kernels::Material& m, const TextureData* texture = nullptr) {
+unsigned needs_of(const kernels::Material& m, const TextureData* texture = nullptr, bool exact_fresnel = false) {
     SmallScene s = sunlit(kernels::IntegratorKind::path);
+    s.snapshot.settings.exact_fresnel = exact_fresnel;
     if (texture) s.scene.textures.push_back(*texture);
     s.add_instance(s.add_mesh(unit_square()), m, glm::dmat4(1));
-    return s.render(1, 1, 1).statistics.required & (kernels::requirement::kMirrors | kernels::requirement::kIor);
+    return s.render(1, 1, 1).statistics.required & (kernels::requirement::kMirrors | kernels::requirement::kIor | kernels::requirement::kExactFresnel);
 }
 
 TEST(MirrorNeeds, BeginBelowTheNarrowestOtherLobe) {
@@ -167,6 +168,22 @@ TEST(MirrorNeeds, BeginBelowTheNarrowestOtherLobe) {
     kernels::Material glass = material({1, 1, 1}, 0, 1);
     glass.dielectric_f0 = 0.1f;
     EXPECT_EQ(needs_of(glass), kIor);
+}
+
+TEST(MirrorNeeds, OfFresnelsEquationsAreThoseOfDielectrics) {
+    using kernels::requirement::kExactFresnel;
+    TextureData map;
+    map.width = map.height = 1;
+    map.format = kernels::TexelFormat::rgba8_linear;
+    map.texels = {0, 255, 255, 0};
+    kernels::Material unlit = material({1, 1, 1}, 0, 1), textured = material({1, 1, 1}, 1, 1);
+    unlit.unlit = true;
+    textured.metallic_roughness_texture.texture = 0;
+    EXPECT_EQ(needs_of(material({1, 1, 1}, 1, 1), nullptr, true), 0u);
+    EXPECT_EQ(needs_of(unlit, nullptr, true), 0u);
+    EXPECT_EQ(needs_of(material({1, 1, 1}, 0.9f, 1), nullptr, true), kExactFresnel);
+    EXPECT_EQ(needs_of(textured, &map, true), kExactFresnel);
+    EXPECT_EQ(needs_of(material({1, 1, 1}, 0.9f, 1)), 0u);
 }
 
 TEST(MirrorNeeds, FollowTheLeastRoughnessOfATexture) {

@@ -63,7 +63,7 @@ private:
         "base texture", "roughness texture", "emission texture", "normal map", "mask", "blend", "unlit", "emission",
         "double sided", "metal", "sun", "wide sun", "point", "sphere", "spot", "area", "moving light", "dark light", "sky image", "hidden sky",
         "lens", "moving camera", "many camera keys", "orthographic", "gaussian", "mitchell", "rolling shutter", "clamp", "culled", "few bounces",
-        "previous", "smooth", "ior"};
+        "previous", "smooth", "ior", "exact Fresnel"};
 
     bool has(std::string_view feature) const {
         return std::find(features_.begin(), features_.end(), feature) != features_.end();
@@ -79,6 +79,7 @@ private:
         settings.max_bounces = settings.max_diffuse = settings.max_glossy = has("few bounces") ? dice_.below(2) : 4;
         if (has("clamp")) settings.clamp_direct = settings.clamp_indirect = 0.5f;
         settings.cull_backfaces = has("culled");
+        settings.exact_fresnel = has("exact Fresnel");
         if (has("gaussian")) settings.filter = kernels::FilterKind::gaussian;
         if (has("mitchell")) settings.filter = kernels::FilterKind::mitchell;
         settings.filter_radius = settings.filter == kernels::FilterKind::box ? 0.5f : 1.5f;

@@ -206,6 +206,21 @@ inline const std::vector<VariedScene>& varied_scenes() {
                  shutter.passed[i] = x * x * (3 - 2 * x);
              }
          }},
+        {"dielectrics by Fresnel's equations before an area light",
+         [](SmallScene& s) {
+             s.snapshot.settings.exact_fresnel = true;
+             kernels::Material coat = shiny;
+             coat.metallic = 0.3f;
+             s.add_instance(s.add_mesh(unit_sphere(16)), coat, place({-0.5, 0, 0}), false);
+             add_floor(s, false);
+             kernels::Light panel;
+             panel.kind = kernels::LightKind::area;
+             panel.radiance = {3, 3, 3};
+             panel.position = {0, 2, -1};
+             panel.direction = {0, -1, 0};
+             panel.axis_v = {0, 0, 1};
+             s.add_light(panel);
+         }},
         {"culled from behind before nothing, with the motion since the frame before",
          [](SmallScene& s) {
              s.snapshot.environment.visible = false;

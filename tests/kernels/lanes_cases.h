@@ -87,29 +87,30 @@ void case_camera(const CaseWorld& world, const F* in, Outputs<F>& out) {
     }
 }
 
-template <bool kMirrors, class F>
+template <unsigned R, class F>
 void add_bsdf(const F* in, F roughness, Outputs<F>& out) {
     const F cos_o = max(in[0], F(1e-4f));
-    const Bsdf<F> b = make_bsdf<kMirrors>(Vec3<F>{in[1], in[2], in[3]}, in[4], roughness, cos_o);
+    const Bsdf<F> b = make_bsdf<R>(Vec3<F>{in[1], in[2], in[3]}, in[4], roughness, cos_o, in[11], true);
     out.add(b.f0), out.add(b.diffuse), out.add(b.specular_scale), out.add(b.alpha), out.add(b.specular_probability);
     const Vec3<F> wo{safe_sqrt(F(1.0f) - cos_o * cos_o), F(0.0f), cos_o};
-    const BsdfValue<F> value = evaluate_bsdf<kMirrors>(b, wo, case_direction(in[6], in[7]));
+    const BsdfValue<F> value = evaluate_bsdf<R>(b, wo, case_direction(in[6], in[7]));
     out.add(value.f_cos), out.add(value.pdf);
-    const BsdfSample<F> sample = sample_bsdf<kMirrors>(b, wo, Vec2<F>{in[8], in[9]}, in[10]);
+    const BsdfSample<F> sample = sample_bsdf<R>(b, wo, Vec2<F>{in[8], in[9]}, in[10]);
     out.add(sample.wi), out.add(sample.pdf), out.add_mask(sample.glossy), out.add(luminance(sample.weight));
 }
 
-/// Of any width; and of a width around the cut, a delta in some lanes.
+/// Of any width; and of a width around the cut, a delta in some lanes; both Fresnel terms.
 template <class F>
 void case_bsdf(const CaseWorld&, const F* in, Outputs<F>& out) {
-    add_bsdf<false>(in, in[5], out);
-    add_bsdf<true>(in, in[5] * F(0.01f), out);
+    add_bsdf<0>(in, in[5], out);
+    add_bsdf<requirement::kMirrors | requirement::kExactFresnel>(in, in[5] * F(0.01f), out);
 }
 
 template <class F>
 void case_analytic(const CaseWorld&, const F* in, Outputs<F>& out) {
-    out.add(analytic_brdf(Vec3<F>{in[0], in[1], in[2]}, in[3], in[4], in[11], case_direction(in[5], in[6]),
-                          case_direction(in[7], in[8]), case_direction(in[9], in[10])));
+    const Vec3<F> color{in[0], in[1], in[2]}, n = case_direction(in[5], in[6]), wo = case_direction(in[7], in[8]), wi = case_direction(in[9], in[10]);
+    out.add(analytic_brdf(color, in[3], in[4], in[11], n, wo, wi));
+    out.add(analytic_brdf<requirement::kExactFresnel>(color, in[3], in[4], in[11], n, wo, wi, true));
 }
 
 template <class F>

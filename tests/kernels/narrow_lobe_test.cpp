@@ -22,7 +22,7 @@ Vec3<double> in_double(Vec3f v) { return splat<double>(v); }
 
 template <class F>
 Bsdf<F> metal(float roughness, F cos_o) {
-    return make_bsdf<true>(Vec3<F>{F(0.9f), F(0.6f), F(0.3f)}, F(1), F(roughness), cos_o);
+    return make_bsdf<requirement::kMirrors>(Vec3<F>{F(0.9f), F(0.6f), F(0.3f)}, F(1), F(roughness), cos_o);
 }
 
 /// Mean weight of the lobe's samples, and of the base's, over a grid (see bsdf_test.cpp).
@@ -36,7 +36,7 @@ double albedo(const Bsdf<float>& b, Vec3f wo, int n = 96) {
                 const double t = (j + 0.5) / n, v = t * t * (3 - 2 * t), dv = 6 * t * (1 - t);
                 const float u_lobe = lobe == 0 ? 0.0f : kOneMinusEpsilon;
                 sum += share * dv *
-                       sample_bsdf<true>(b, wo, Vec2f{(i + 0.5f) / n, static_cast<float>(v)}, u_lobe).weight.x;
+                       sample_bsdf<requirement::kMirrors>(b, wo, Vec2f{(i + 0.5f) / n, static_cast<float>(v)}, u_lobe).weight.x;
             }
     }
     return sum / n / n;
@@ -47,7 +47,7 @@ TEST(NarrowLobe, WhiteFurnaceIsOne) {
         for (const float metallic : {0.0f, 0.4f, 1.0f})
             for (const float roughness : kNarrow)
                 for (const float cos_o : {1.0f, 0.5f, 0.1f, 0.01f, 1e-3f}) {
-                    const Bsdf<float> b = make_bsdf<true>(Vec3f{1, 1, 1}, metallic, roughness, cos_o, f0);
+                    const Bsdf<float> b = make_bsdf<requirement::kMirrors>(Vec3f{1, 1, 1}, metallic, roughness, cos_o, f0);
                     // The table's error, as for wider lobes.
                     EXPECT_NEAR(albedo(b, viewer(cos_o)), 1, 0.003)
                         << "f0 " << f0 << ", metallic " << metallic << ", roughness " << roughness << ", cos " << cos_o;
@@ -65,9 +65,9 @@ TEST(NarrowLobe, WiderDielectricsOfEveryIndexAreWhiteToo) {
 TEST(NarrowLobe, ADeltaReflectsItsFresnelTerm) {
     for (const float f0 : {0.0f, kDielectricF0, 0.444f, 1.0f})
         for (const float cos_o : kCosines) {
-            const Bsdf<float> b = make_bsdf<true>(Vec3f{0, 0, 0}, 0.0f, 0.0f, cos_o, f0);
+            const Bsdf<float> b = make_bsdf<requirement::kMirrors>(Vec3f{0, 0, 0}, 0.0f, 0.0f, cos_o, f0);
             const Vec3f wo = viewer(cos_o);
-            const BsdfSample<float> s = sample_bsdf<true>(b, wo, Vec2f{0.3f, 0.8f}, 0.0f);
+            const BsdfSample<float> s = sample_bsdf<requirement::kMirrors>(b, wo, Vec2f{0.3f, 0.8f}, 0.0f);
             const double fresnel = f0 + (1.0 - f0) * std::pow(1.0 - cos_o, 5);
             EXPECT_EQ(b.specular_probability, 1.0f);
             EXPECT_NEAR(s.weight.x, fresnel, 4e-7 * (0.1 + fresnel)) << f0 << ' ' << cos_o;  // a few roundings
@@ -79,15 +79,15 @@ TEST(NarrowLobe, ADeltaReflectsItsFresnelTerm) {
 
 TEST(NarrowLobe, ADeltaLeavesTheBaseToLightSampling) {
     Random random(3);
-    const Bsdf<float> b = make_bsdf<true>(Vec3f{0.8f, 0.5f, 0.2f}, 0.0f, 0.0f, 0.7f);
+    const Bsdf<float> b = make_bsdf<requirement::kMirrors>(Vec3f{0.8f, 0.5f, 0.2f}, 0.0f, 0.0f, 0.7f);
     const Vec3f wo = viewer(0.7f);
     EXPECT_EQ(b.alpha, 0.0f);
     for (int i = 0; i < 1000; ++i) {
-        const BsdfSample<float> s = sample_bsdf<true>(b, wo, random.pair(), kOneMinusEpsilon);
+        const BsdfSample<float> s = sample_bsdf<requirement::kMirrors>(b, wo, random.pair(), kOneMinusEpsilon);
         EXPECT_NEAR(s.pdf, kInvPi * s.wi.z * (1 - b.specular_probability), 1e-6);
         EXPECT_NEAR(s.weight.x, b.diffuse.x / (1 - b.specular_probability), 1e-6);
     }
-    const BsdfValue<float> mirrored = evaluate_bsdf<true>(b, wo, Vec3f{-wo.x, 0, wo.z});
+    const BsdfValue<float> mirrored = evaluate_bsdf<requirement::kMirrors>(b, wo, Vec3f{-wo.x, 0, wo.z});
     EXPECT_NEAR(mirrored.f_cos.x, b.diffuse.x * kInvPi * wo.z, 1e-6);
 }
 
@@ -113,12 +113,12 @@ TEST(NarrowLobe, WiderLobesKeepEveryBit) {
         const Vec3f color{random(), random(), random()};
         const float metallic = i % 3 == 0 ? 0.0f : random(), roughness = 0.03163f + 0.96837f * random();
         const Bsdf<float> a = make_bsdf(color, metallic, roughness, cos_o),
-                          b = make_bsdf<true>(color, metallic, roughness, cos_o);
+                          b = make_bsdf<requirement::kMirrors>(color, metallic, roughness, cos_o);
         ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0);
         const Vec3f wo = viewer(cos_o);
         const Vec2f u = random.pair();
         const float u_lobe = random();
-        const BsdfSample<float> s = sample_bsdf(a, wo, u, u_lobe), t = sample_bsdf<true>(b, wo, u, u_lobe);
+        const BsdfSample<float> s = sample_bsdf(a, wo, u, u_lobe), t = sample_bsdf<requirement::kMirrors>(b, wo, u, u_lobe);
         ASSERT_TRUE(std::memcmp(&s.wi, &t.wi, sizeof s.wi) == 0 &&
                     std::memcmp(&s.weight, &t.weight, sizeof s.weight) == 0 && s.pdf == t.pdf && s.glossy == t.glossy);
     }
@@ -149,8 +149,8 @@ TEST(NarrowLobe, ValuesAndDensitiesAreThoseOfDouble) {
             Bsdf<double> exact = metal<double>(roughness, cos_o);
             exact.specular_scale = in_double(b.specular_scale);  // the tables have a test of their own
             for_directions_of(b.alpha, wo, [&](Vec3f wi) {
-                const BsdfValue<float> is = evaluate_bsdf<true>(b, wo, wi);
-                const BsdfValue<double> wanted = evaluate_bsdf<true>(exact, in_double(wo), in_double(wi));
+                const BsdfValue<float> is = evaluate_bsdf<requirement::kMirrors>(b, wo, wi);
+                const BsdfValue<double> wanted = evaluate_bsdf<requirement::kMirrors>(exact, in_double(wo), in_double(wi));
                 ASSERT_GT(wanted.pdf, 0);
                 worst = std::max({worst, std::abs(is.pdf / wanted.pdf - 1), std::abs(is.f_cos.x / wanted.f_cos.x - 1)});
                 ++compared;
@@ -173,9 +173,9 @@ TEST(NarrowLobe, SamplesAreThoseOfDouble) {
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j) {
                     const Vec2f u{(i + 0.5f) / 8, (j + 0.5f) / 8};
-                    const BsdfSample<float> is = sample_bsdf<true>(b, wo, u, 0.0f);
+                    const BsdfSample<float> is = sample_bsdf<requirement::kMirrors>(b, wo, u, 0.0f);
                     const BsdfSample<double> wanted =
-                        sample_bsdf<true>(exact, in_double(wo), Vec2<double>{u.x, u.y}, 0.0);
+                        sample_bsdf<requirement::kMirrors>(exact, in_double(wo), Vec2<double>{u.x, u.y}, 0.0);
                     const Vec3<double> off = in_double(is.wi) - wanted.wi;
                     direction = std::max(direction, length(off));
                     if (wanted.weight.x > 0) weight = std::max(weight, std::abs(is.weight.x / wanted.weight.x - 1));
@@ -199,7 +199,7 @@ TEST(NarrowLobe, SamplesFollowTheDensity) {
             double density = 0;
             for (int i = 0; i < kSamples; ++i) {
                 const Vec2f u = random.pair();
-                const BsdfSample<double> s = sample_bsdf<true>(b, wo, Vec2<double>{u.x, u.y}, 0.0);
+                const BsdfSample<double> s = sample_bsdf<requirement::kMirrors>(b, wo, Vec2<double>{u.x, u.y}, 0.0);
                 const Vec3<double> h = normalize(wo + s.wi);
                 within += std::hypot(h.x, h.y) / h.z < b.alpha;
                 density += 1 / (s.pdf * b.alpha * b.alpha) * (std::hypot(h.x, h.y) / h.z < b.alpha);

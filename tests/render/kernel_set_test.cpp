@@ -60,6 +60,16 @@ TEST(KernelSet, HoldsWhatTheShotAsksForAndNothingElse) {
     EXPECT_EQ(with([](Triangle& s) { s.material().emission = {1, 1, 1}; }).requirements, kTransforms | kEmitters);
     EXPECT_EQ(with([](Triangle& s) { s.material().roughness = 0; }).requirements, kTransforms | kMirrors);
     EXPECT_EQ(with([](Triangle& s) { s.material().dielectric_f0 = 0.1f; }).requirements, kTransforms | kIor);
+    EXPECT_EQ(with([](Triangle& s) {
+                  s.shot.render.fresnel = FresnelKind::exact;
+                  s.material().metallic = 0;
+              }).requirements,
+              kTransforms | kExactFresnel);
+    EXPECT_EQ(with([](Triangle& s) {
+                  s.shot.render.fresnel = FresnelKind::exact;
+                  s.material().metallic = 1;
+              }).requirements,
+              kTransforms);
     EXPECT_EQ(with([](Triangle& s) { s.shot.lights = {light(LightKind::area)}; }).requirements,
               kTransforms | kEmitters);
     EXPECT_EQ(with([](Triangle& s) { s.shot.lights = {light(LightKind::point)}; }).requirements, kTransforms);

@@ -87,7 +87,7 @@ shots: [])"),
          R"(shot.yaml:4:11: error: unknown key 'colour' in render
     render: { colour: 4 }
               ^~~~~~
-  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
+  expected one of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, fresnel, seed, cull_backfaces)"},
         {std::string(kBase) + R"(image: { size: [1, 2] }
 image: { size: [3, 4] })",
          R"(shot.yaml:5:1: error: duplicate key 'image'
@@ -118,7 +118,7 @@ image: { size: [3, 4] })",
          R"(shot.yaml:4:9: error: render is 5
     render: 5
             ^
-  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, seed, cull_backfaces)"},
+  expected a map of quality, integrator, samples, bounces, filter, motion_tolerance, motion_frames, clamp, denoise, build, robust, texture_limit, fresnel, seed, cull_backfaces)"},
         {std::string(kBase) + R"(render: { samples: { max_error: 2, at_least: 64, at_most: 32 } })",
          R"(shot.yaml:4:33: error: render.samples.max_error is 2
     render: { samples: { max_error: 2, at_least: 64, at_most: 32 } }

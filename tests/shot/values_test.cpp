@@ -230,7 +230,7 @@ TEST_F(Values, LightsHaveTheUnitsOfTheirKind) {
 TEST_F(Values, RenderSettingsTakeShortForms) {
     const RenderSpec whole = parse(
                                  "render: { integrator: direct, samples: 16, bounces: 3, filter: box, seed: 7, clamp: "
-                                 "{ indirect: 10 }, cull_backfaces: true }")
+                                 "{ indirect: 10 }, cull_backfaces: true, fresnel: exact }")
                                  .render;
     EXPECT_EQ(whole.integrator, Integrator::direct);
     EXPECT_EQ(whole.bounces, (RenderSpec::Bounces{3, 3, 3, 3}));
@@ -240,12 +240,14 @@ TEST_F(Values, RenderSettingsTakeShortForms) {
     EXPECT_FALSE(whole.clamp_direct);
     EXPECT_EQ(whole.clamp_indirect, 10);
     EXPECT_TRUE(whole.cull_backfaces);
+    EXPECT_EQ(whole.fresnel, FresnelKind::exact);
     const RenderSpec parts = parse(
                                  "render: { bounces: { total: 6, diffuse: 2 }, filter: { type: mitchell, width: 2 px "
                                  "}, seed: { value: 4294967295, animated: true } }")
                                  .render;
     EXPECT_EQ(parts.bounces, (RenderSpec::Bounces{6, 2, 6, 6}));
     EXPECT_EQ(parts.filter_width_px, 2);
+    EXPECT_EQ(parts.fresnel, FresnelKind::schlick);
     EXPECT_EQ(parts.seed, 4294967295u);
     EXPECT_TRUE(parts.seed_animated);
 }

@@ -17,7 +17,7 @@ namespace kadr {
 namespace kernel_sets {
 using namespace kernels::requirement;
 
-inline constexpr unsigned kSmooth = kMirrors | kIor;
+inline constexpr unsigned kSmooth = kMirrors | kIor | kExactFresnel;
 inline constexpr std::array kPlainPath{0u, kEmitters, kTransforms, kTransforms | kEmitters, kSmooth | kTransforms | kEmitters};
 inline constexpr std::array kMapsPath{kMaps,
                                       kMaps | kEmitters,
@@ -27,8 +27,8 @@ inline constexpr std::array kMapsPath{kMaps,
                                       kMaps | kSpecials | kEmitters,
                                       kMaps | kSpecials | kTransforms | kEmitters,
                                       kAll};
-/// Without kEmitters and kMirrors: the analytic model meets no lights and has no narrower lobes. Indices of refraction are
-/// in the largest set.
+/// Without kEmitters and kMirrors: the analytic model meets no lights and has no narrower lobes. Indices of refraction and
+/// Fresnel's equations are in the largest set.
 inline constexpr std::array kDirect{0u,
                                     kTransforms,
                                     kMaps,

@@ -25,6 +25,7 @@ bool equal(const kernels::Vec3f& a, const kernels::Vec3f& b) { return a.x == b.x
 
 bool MaterialTable::set(const SceneSnapshot& snapshot) {
     materials_ = snapshot.materials;
+    exact_fresnel_ = snapshot.settings.exact_fresnel;
     bool same = emissions_.size() == count();
     emissions_.resize(count());
     for (std::size_t i = 0; i < count(); ++i) {
@@ -60,7 +61,8 @@ void MaterialTable::note_shown(const SceneSnapshot& snapshot, std::span<const ke
 unsigned MaterialTable::needs_of_lobe(const kernels::Material& m) const {
     using namespace kernels::requirement;
     const bool mirror = is_mirror(m, [this](int texture) { return *least_green_[static_cast<std::size_t>(texture)]; });
-    return (mirror ? kMirrors : 0) | (!m.unlit && m.dielectric_f0 != kernels::kDielectricF0 ? kIor : 0);
+    const bool dielectric = !m.unlit && (m.metallic < 1 || m.metallic_roughness_texture.texture >= 0);
+    return (mirror ? kMirrors : 0) | (!m.unlit && m.dielectric_f0 != kernels::kDielectricF0 ? kIor : 0) | (exact_fresnel_ && dielectric ? kExactFresnel : 0);
 }
 
 unsigned MaterialTable::requirements() const {

@@ -27,7 +27,7 @@ public:
 
     const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
     std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }
-    /// What is shown needs of requirement::kMaps, kSpecials, kMirrors and kIor.
+    /// What is shown needs of requirement::kMaps, kSpecials, kMirrors, kIor and kExactFresnel.
     unsigned requirements() const;
 
 private:
@@ -38,7 +38,7 @@ private:
     std::vector<kernels::Vec3f> emissions_;     ///< [material] of the frame before
     std::vector<unsigned> shown_;               ///< materials, each once
     std::vector<std::optional<float>> least_green_;  ///< [texture] of those that are roughness on what was shown
-    bool shows_colors_ = false;
+    bool shows_colors_ = false, exact_fresnel_ = false;
 };
 
 /// Whether rays have to ask at every hit on this material: partial coverage, or faces to cull.
