@@ -38,7 +38,7 @@ FrameFarm::~FrameFarm() {
     join();
 }
 
-DeviceStatistics FrameFarm::plan_budget(const std::vector<int>& frames, const std::function<bool(const FrameTime&)>& there) {
+DeviceStatistics FrameFarm::plan_budget(const std::vector<int>& frames, const std::function<std::optional<double>(const FrameTime&)>& there) {
     Worker& worker = *workers_.front();
     load(worker);
     DeviceStatistics taken;

@@ -42,7 +42,7 @@ public:
 
     /// Of a shot with a time budget: looks ahead at what its frames take, on the first device. Before start().
     /// @param there  frames that are complete already  @return what that took
-    DeviceStatistics plan_budget(const std::vector<int>& frames, const std::function<bool(const FrameTime&)>& there);
+    DeviceStatistics plan_budget(const std::vector<int>& frames, const std::function<std::optional<double>(const FrameTime&)>& there);
     /// Begins to render. What fails is what the frame's future throws; with several devices it says which one failed.
     /// @param schedule  outlives the farm
     void start(FrameSchedule& schedule);

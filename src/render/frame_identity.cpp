@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 #include <fmt/format.h>
 
 #include "base/text.h"
 #include "base/version.h"
+#include "output/frame_writer.h"
 #include "render/denoising.h"
 #include "shot/schema.h"
 #include "shot/shot_hash.h"
@@ -157,6 +159,14 @@ Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedF
     metadata["dropped_samples"] = std::to_string(frame.statistics.dropped_samples);
     metadata["seconds"] = fmt::format("{:.3f}", frame.seconds);
     return metadata;
+}
+
+double stored_relmse(const std::filesystem::path& frame) {
+    const Metadata metadata = describe_image(frame);
+    const auto stored = metadata.find("error_relmse");
+    double relmse = 0;
+    if (stored != metadata.end()) std::from_chars(stored->second.data(), stored->second.data() + stored->second.size(), relmse);
+    return relmse;
 }
 
 }  // namespace kadr

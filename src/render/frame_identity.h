@@ -39,4 +39,7 @@ Metadata shot_metadata(const Shot& shot, const std::string& device_name);
 Metadata frame_metadata(const Shot& shot, const FrameTime& time, const RenderedFrame& frame,
                         const std::string& device_name);
 
+/// The relative mean square error that a frame's file says it has; 0 where it says nothing.
+double stored_relmse(const std::filesystem::path& frame);
+
 }  // namespace kadr

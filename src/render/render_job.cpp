@@ -159,8 +159,10 @@ bool RenderJob::is_complete(const std::vector<std::filesystem::path>& files, con
 /// Of a shot that has one: looks ahead at what its frames take.
 void RenderJob::plan_budget() {
     if (!loaded_->shot().render.time_budget_shot_s) return;
-    const auto there = [&](const FrameTime& time) {
-        return !options_.overwrite && is_complete(frame_files(loaded_->shot().output, time.number), identity_->of(time));
+    const auto there = [&](const FrameTime& time) -> std::optional<double> {
+        const std::vector<std::filesystem::path> files = frame_files(loaded_->shot().output, time.number);
+        if (options_.overwrite || !is_complete(files, identity_->of(time))) return std::nullopt;
+        return stored_relmse(files.front());
     };
     const std::vector<int>& frames = loaded_->bound().timing().frames;
     const Sequence& sequence = loaded_->bound().sequence();

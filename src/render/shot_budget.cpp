@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -98,6 +99,15 @@ double ShotBudget::device_s(double now_s) const {
     return free;
 }
 
+/// The error of the nearest frame that is there, before it if there is one.
+std::optional<double> ShotBudget::reached_beside(std::size_t frame) const {
+    const auto known = [](const PlannedFrame& each) { return each.reached > 0; };
+    const auto here = frames_.begin() + static_cast<std::ptrdiff_t>(frame);
+    if (const auto before = std::find_if(std::make_reverse_iterator(here), frames_.rend(), known); before != frames_.rend()) return before->reached;
+    if (const auto after = std::find_if(here, frames_.end(), known); after != frames_.end()) return after->reached;
+    return std::nullopt;
+}
+
 FrameTarget ShotBudget::equal_share(std::size_t first, double now_s) const {
     std::size_t left = 0;
     for (std::size_t i = first; i < frames_.size(); ++i) left += !frames_[i].free;
@@ -119,6 +129,7 @@ std::optional<FrameTarget> ShotBudget::begin(int number, std::size_t device) {
         return share;
     }
     const double left = device_s(now_s), at_the_latest = left + devices_ * kLate * *seconds_;
+    if (!target_) target_ = reached_beside(frame);
     const bool first = !target_;
     double relmse = affordable_relmse(left, [&](double each) { return forecast_s(frame, each); });
     if (target_) {

@@ -25,6 +25,7 @@ struct PlannedFrame {
     int number = 0;
     bool free = false;                      ///< it is there already, or is an earlier one again
     std::optional<FrameForecast> forecast;  ///< absent: like the frames around it that have one
+    double reached = 0;                     ///< relative mean square error of one that an earlier run left; 0: not known
 };
 
 /// Deals the wall time of a shot to its frames, so that all end with about the same error, and neighbours above all:
@@ -34,7 +35,7 @@ struct PlannedFrame {
 /// frames, as forecast. Forecasts err, so the target follows, but from frame to frame by no more than kDrift: error,
 /// not time, is what a frame gets of the machine's mood. The deadline comes first only where such steps could not hold
 /// it any more. The first frame has no neighbour to be like: its target follows what its own rounds take, since a pilot on a
-/// machine that is busy elsewhere may be off by any factor.
+/// machine that is busy elsewhere may be off by any factor. Beside a frame that an earlier run left it is like that one.
 ///
 /// Several devices have as many times the wall time that is left, less what the frames that they render will still take.
 /// May be asked by any thread once it is planned.
@@ -78,6 +79,7 @@ private:
     double device_s(double now_s) const;
     FrameTarget revised(std::size_t device, double left_s, double seconds, double relmse);
     FrameTarget target_of(std::size_t frame, std::size_t device, double relmse, double left_s, double now_s);
+    std::optional<double> reached_beside(std::size_t frame) const;
     FrameTarget equal_share(std::size_t first, double now_s) const;
     double longest_s(std::size_t frame, double relmse, double at_the_latest) const;
 

@@ -56,8 +56,10 @@ std::vector<std::size_t> coarse_to_fine(std::size_t count) {
 
 std::vector<PlannedFrame> pilot_frames(const PilotShot& pilot, FrameRenderer& renderer, DeviceStatistics& statistics) {
     std::vector<PlannedFrame> frames;
-    for (const int number : pilot.frames)
-        frames.push_back({number, pilot.there(pilot.shot.sequence().frame(number)), std::nullopt});
+    for (const int number : pilot.frames) {
+        const std::optional<double> reached = pilot.there(pilot.shot.sequence().frame(number));
+        frames.push_back({number, reached.has_value(), std::nullopt, reached.value_or(0)});
+    }
     const double begin_s = pilot.clock(), end_s = begin_s + kPilotShare * pilot.budget_s;
     find_repeats(pilot, begin_s + kPilotShare / 2 * pilot.budget_s, frames);
     std::vector<PlannedFrame*> ours;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "render/frame_renderer.h"
@@ -18,12 +19,13 @@ std::vector<std::size_t> coarse_to_fine(std::size_t count);
 /// Looks ahead: which frames of a shot are free, and what the others take. As many of them, coarse to fine, as
 /// kPilotShare of the time left pays for; which frames repeat others is looked for in half of that.
 ///
-/// @param frames  the frames of the shot, in order; `there`: those that are complete already
+/// @param frames  the frames of the shot, in order
+/// @param there   of a frame that is complete already its relative mean square error, 0 where that is not known
 /// @param clock   seconds since some moment
 struct PilotShot {
     const BoundShot& shot;
     const std::vector<int>& frames;
-    std::function<bool(const FrameTime&)> there;
+    std::function<std::optional<double>(const FrameTime&)> there;
     FilmLayers layers;
     double budget_s = 0;
     std::function<double()> clock;

@@ -15,6 +15,7 @@
 #include "output/frame_writer.h"
 #include "output/image_io.h"
 #include "render/fake_device.h"
+#include "render/frame_identity.h"
 #include "render/frame_memory.h"
 #include "render/loaded_shot.h"
 #include "render/tiny_shot.h"
@@ -87,6 +88,19 @@ TEST_F(RenderJobTest, SaysInTheFileWhatItIs) {
     EXPECT_EQ(metadata["samples"], "4");
     EXPECT_EQ(metadata["device"], "fake") << "neither threads nor lanes";
     EXPECT_EQ(metadata["settings"].size(), 32u);
+}
+
+TEST_F(RenderJobTest, TheErrorOfAFrameIsReadFromItsFile) {
+    fake_device().noise = 0.1f;
+    const RenderSummary summary = run();
+    double sum = 0;
+    for (const char* name : {"tiny.0000.png", "tiny.0001.png", "tiny.0002.png", "tiny.0003.png"}) sum += stored_relmse(file(name));
+    ASSERT_TRUE(summary.relmse && *summary.relmse > 0);
+    EXPECT_NEAR(sum / 4, *summary.relmse, 1e-3 * *summary.relmse);  // files hold four digits
+    fake_device().noise = 0;
+    options_.overwrite = true;
+    run();
+    EXPECT_EQ(stored_relmse(file("tiny.0000.png")), 0);
 }
 
 TEST_F(RenderJobTest, ReusesWhatIsComplete) {

@@ -205,6 +205,24 @@ TEST(ShotBudget, FramesThatAreFreeLeaveTheirTimeToOthers) {
     EXPECT_NEAR(budget.begin(0)->relmse, 1.0 / 100, 1e-4);
 }
 
+TEST(ShotBudget, TheFirstFrameIsLikeThoseOfAnEarlierRun) {
+    const FrameForecast forecast{0, 0.01, 4, 65536, {{4, 0.25}, {64, 0.25 / 16}}};
+    const PlannedFrame kept{0, true, {}, 0.02}, unknown{0, true, {}}, ours{1, false, forecast}, next{2, false, forecast}, last{3, true, {}, 0.03};
+    const auto first_target = [&](std::vector<PlannedFrame> frames) {
+        ShotBudget budget(2.0, [] { return 0.0; });
+        budget.plan(std::move(frames));
+        return *budget.begin(1);
+    };
+    // The time is enough for 0.01; an error changes by a fiftieth a frame.
+    const double step = ShotBudget::kDrift * ShotBudget::kDrift;
+    EXPECT_NEAR(first_target({kept, ours, next}).relmse, 0.02 / step, 1e-9);
+    EXPECT_FALSE(first_target({kept, ours, next}).revise);
+    EXPECT_NEAR(first_target({unknown, ours, next, last}).relmse, 0.03 / step, 1e-9);
+    EXPECT_NEAR(first_target({kept, ours, next, last}).relmse, 0.02 / step, 1e-9);
+    EXPECT_NEAR(first_target({unknown, ours, next}).relmse, 0.01, 1e-4);
+    EXPECT_TRUE(first_target({unknown, ours, next}).revise);
+}
+
 TEST(ShotBudget, EqualFramesEndAlike) {
     expect_held({curve(48, [](double) { return 1.0; })}, 48);
 }

@@ -32,7 +32,7 @@ protected:
     }
     std::vector<PlannedFrame> plan(
         const LoadedShot& loaded, double budget_s,
-        const std::function<bool(const FrameTime&)>& there = [](const FrameTime&) { return false; }) {
+        const std::function<std::optional<double>(const FrameTime&)>& there = [](const FrameTime&) { return std::optional<double>(); }) {
         FrameRenderer renderer(*device_, [this] { return now_; });
         return pilot_frames(
             {loaded.bound(), loaded.bound().timing().frames, there, {}, budget_s, [this] { return now_; }}, renderer,
@@ -126,7 +126,7 @@ TEST_F(ShotPilotTest, FramesThatAreThereOrComeAgainAreFree) {
     EXPECT_THAT(of(plan(still, 1000), is_free), testing::ElementsAre(false, true, true, true));
     const LoadedShot changing = load("[40, 20]");
     const std::vector<PlannedFrame> frames =
-        plan(changing, 1000, [](const FrameTime& time) { return time.number == 1; });
+        plan(changing, 1000, [](const FrameTime& time) { return time.number == 1 ? std::optional(0.02) : std::nullopt; });
     EXPECT_THAT(of(frames, is_free), testing::ElementsAre(false, true, false, false));
     EXPECT_THAT(of(frames, is_known), testing::ElementsAre(true, false, true, true));
 }
