@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "shot/prices.h"
 #include "shot/quality.h"
 #include "shot/schema.h"
 #include "shot/shot_parser.h"
@@ -121,6 +122,7 @@ std::vector<std::string> similar_paths(std::string_view key) {
 std::string describe_schema(std::string_view key) {
     if (key.empty()) return whole_manual();
     if (key == "quality") return describe_quality();
+    if (key == "prices") return describe_prices();
     if (const FieldSpec* field = find_field(key)) return one_field(*field);
     const auto similar = similar_paths(key);
     throw InputError(fmt::format("the shot format has no key '{}'", key),
