@@ -13,7 +13,7 @@ namespace kadr::kernels {
 /// f0 = lerp(dielectric_f0, base colour, metallic), or for the dielectric part Fresnel's equations; k_d = (1 - F)(1 - metallic). Smoother surfaces than alpha allows are
 /// drawn with that alpha: a preview shows the highlight of a lamp on a mirror, where `path` shows the lamp.
 ///
-/// @tparam R  requirements: with kExactFresnel, exact_fresnel is asked
+/// @tparam R  requirements: with kFresnel, exact_fresnel is asked
 /// @param dielectric_f0  Fresnel reflectance at normal incidence; 0.04 where the material names no index of refraction
 /// @param n   unit, turned to the viewer
 /// @param wo  unit, to the viewer;  wi  unit, to the light.  Zero when the light is behind the surface.
@@ -37,7 +37,7 @@ SHARED_FN Vec3<F> analytic_brdf(Vec3<F> base_color, F metallic, F roughness, F d
     const F fresnel = schlick_weight(h_o);
     const Vec3<F> white{one, one, one};
     Vec3<F> reflectance = lerp(lerp(Vec3<F>{dielectric_f0, dielectric_f0, dielectric_f0}, base_color, metallic), white, fresnel);
-    if constexpr ((R & requirement::kExactFresnel) != 0) {
+    if constexpr ((R & requirement::kFresnel) != 0) {
         if (exact_fresnel) {
             const F excess = (one - metallic) * fresnel_excess(min(h_o, one), sqrt(dielectric_f0));
             reflectance = reflectance + Vec3<F>{excess, excess, excess};

@@ -92,7 +92,7 @@ SHARED_FN F dielectric_excess(F cos_o, F roughness, F root_f0, F white, F schlic
     return max(excess, -schlick_single);  // the table's error must not take more than there is
 }
 
-/// @tparam R  requirements. kMirrors: lobes narrower than kMinAlpha are as narrow as they should be. kExactFresnel: asks
+/// @tparam R  requirements. kMirrors: lobes narrower than kMinAlpha are as narrow as they should be. kFresnel: asks
 ///            `exact_fresnel`. Elsewhere the same to the last bit
 /// @param base_color, metallic, roughness  in [0, 1]
 /// @param cos_o  cosine between the shading normal and the viewer, > 0
@@ -100,7 +100,7 @@ SHARED_FN F dielectric_excess(F cos_o, F roughness, F root_f0, F white, F schlic
 /// @param exact_fresnel  Fresnel's equations for the dielectric
 template <unsigned R = 0, class F>
 SHARED_FN Bsdf<F> make_bsdf(Vec3<F> base_color, F metallic, F roughness, F cos_o, F f0 = F(kDielectricF0), bool exact_fresnel = false) {
-    constexpr bool kMirrors = (R & requirement::kMirrors) != 0, kFresnel = (R & requirement::kExactFresnel) != 0;
+    constexpr bool kMirrors = (R & requirement::kMirrors) != 0, kFresnel = (R & requirement::kFresnel) != 0;
     const F one(1.0f), tiny = least_divisor<F>(1e-20f);
     F white, schlick;
     lobe_albedo<kMirrors>(cos_o, roughness, white, schlick);
@@ -153,7 +153,7 @@ template <unsigned R, class F>
 SHARED_FN Vec3<F> lobe_reflectance(const Bsdf<F>& b, F cosine) {
     const F one(1.0f);
     const Vec3<F> reflectance = lerp(b.f0, Vec3<F>{one, one, one}, schlick_weight(cosine));
-    if constexpr ((R & requirement::kExactFresnel) != 0) {
+    if constexpr ((R & requirement::kFresnel) != 0) {
         if (any(b.dielectric > F(0.0f))) {
             const F excess = b.dielectric * fresnel_excess(min(cosine, one), b.root_f0);
             return reflectance + Vec3<F>{excess, excess, excess};

@@ -15,8 +15,8 @@ inline constexpr unsigned kDeformation = 8;  ///< meshes that bend while the shu
 inline constexpr unsigned kSpecials = 16;
 inline constexpr unsigned kMirrors = 32;  ///< lobes narrower than kMinAlpha (bsdf/ggx.h), down to deltas; only by `path`
 inline constexpr unsigned kIor = 64;      ///< dielectrics of another index of refraction than 1.5
-inline constexpr unsigned kExactFresnel = 128;  ///< Settings::exact_fresnel, and a dielectric to see it on (bsdf/fresnel.h)
-inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials | kMirrors | kIor | kExactFresnel;
+inline constexpr unsigned kFresnel = 128;  ///< Settings::exact_fresnel, and a dielectric to see it on (bsdf/fresnel.h)
+inline constexpr unsigned kAll = kMaps | kTransforms | kEmitters | kDeformation | kSpecials | kMirrors | kIor | kFresnel;
 }  // namespace requirement
 
 }  // namespace kadr::kernels

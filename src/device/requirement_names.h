@@ -22,7 +22,7 @@ inline constexpr RequirementName kRequirementNames[] = {
      "vertex colours, a second set of texture coordinates, partial coverage, unlit materials"},
     {kernels::requirement::kMirrors, "mirrors", "surfaces smoother than roughness 0.032"},
     {kernels::requirement::kIor, "ior", "dielectrics of another index of refraction than 1.5"},
-    {kernels::requirement::kExactFresnel, "fresnel", "dielectrics by Fresnel's equations"},
+    {kernels::requirement::kFresnel, "fresnel", "dielectrics by Fresnel's equations"},
 };
 
 /// "maps emitters"; "nothing" for an empty set.

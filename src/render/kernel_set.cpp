@@ -23,7 +23,7 @@ const Asker kAskers[] = {
     {kDeformation, {Feature::blur_vertices}},
     {kMirrors, {Feature::mirror}},
     {kIor, {Feature::index_of_refraction}},
-    {kExactFresnel, {Feature::exact_fresnel}},
+    {kFresnel, {Feature::exact_fresnel}},
 };
 
 constexpr Feature kAskFunctions[] = {Feature::alpha_mask, Feature::alpha_blend, Feature::back_face_culling, Feature::blur_vertices};

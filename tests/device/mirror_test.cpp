@@ -152,7 +152,7 @@ unsigned needs_of(const kernels::Material& m, const TextureData* texture = nullp
     s.snapshot.settings.exact_fresnel = exact_fresnel;
     if (texture) s.scene.textures.push_back(*texture);
     s.add_instance(s.add_mesh(unit_square()), m, glm::dmat4(1));
-    return s.render(1, 1, 1).statistics.required & (kernels::requirement::kMirrors | kernels::requirement::kIor | kernels::requirement::kExactFresnel);
+    return s.render(1, 1, 1).statistics.required & (kernels::requirement::kMirrors | kernels::requirement::kIor | kernels::requirement::kFresnel);
 }
 
 TEST(MirrorNeeds, BeginBelowTheNarrowestOtherLobe) {
@@ -171,7 +171,7 @@ TEST(MirrorNeeds, BeginBelowTheNarrowestOtherLobe) {
 }
 
 TEST(MirrorNeeds, OfFresnelsEquationsAreThoseOfDielectrics) {
-    using kernels::requirement::kExactFresnel;
+    using kernels::requirement::kFresnel;
     TextureData map;
     map.width = map.height = 1;
     map.format = kernels::TexelFormat::rgba8_linear;
@@ -181,8 +181,8 @@ TEST(MirrorNeeds, OfFresnelsEquationsAreThoseOfDielectrics) {
     textured.metallic_roughness_texture.texture = 0;
     EXPECT_EQ(needs_of(material({1, 1, 1}, 1, 1), nullptr, true), 0u);
     EXPECT_EQ(needs_of(unlit, nullptr, true), 0u);
-    EXPECT_EQ(needs_of(material({1, 1, 1}, 0.9f, 1), nullptr, true), kExactFresnel);
-    EXPECT_EQ(needs_of(textured, &map, true), kExactFresnel);
+    EXPECT_EQ(needs_of(material({1, 1, 1}, 0.9f, 1), nullptr, true), kFresnel);
+    EXPECT_EQ(needs_of(textured, &map, true), kFresnel);
     EXPECT_EQ(needs_of(material({1, 1, 1}, 0.9f, 1)), 0u);
 }
 

@@ -53,7 +53,7 @@ class Logs(unittest.TestCase):
 
 class Sources(unittest.TestCase):
     def test_requirements_are_those_of_the_kernels(self):
-        self.assertEqual(check.requirement_bits(), {"maps": 1, "transforms": 2, "emitters": 4, "deformation": 8, "specials": 16, "mirrors": 32, "ior": 64})
+        self.assertEqual(check.requirement_bits(), {"maps": 1, "transforms": 2, "emitters": 4, "deformation": 8, "specials": 16, "mirrors": 32, "ior": 64, "fresnel": 128})
 
     def test_functions_of_every_geometry_type_are_declared_and_called(self):
         text = check.prologue("path")

@@ -11,7 +11,7 @@
 namespace kadr::kernels {
 namespace {
 
-constexpr unsigned kExact = requirement::kExactFresnel, kExactMirrors = requirement::kExactFresnel | requirement::kMirrors;
+constexpr unsigned kExact = requirement::kFresnel, kExactMirrors = requirement::kFresnel | requirement::kMirrors;
 constexpr double kIndices[] = {1.0, 1.0001, 1.33, 1.5, 2.42, 5.0};
 
 double f0_of(double index) { return std::pow((index - 1) / (index + 1), 2); }

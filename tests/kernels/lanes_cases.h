@@ -103,14 +103,14 @@ void add_bsdf(const F* in, F roughness, Outputs<F>& out) {
 template <class F>
 void case_bsdf(const CaseWorld&, const F* in, Outputs<F>& out) {
     add_bsdf<0>(in, in[5], out);
-    add_bsdf<requirement::kMirrors | requirement::kExactFresnel>(in, in[5] * F(0.01f), out);
+    add_bsdf<requirement::kMirrors | requirement::kFresnel>(in, in[5] * F(0.01f), out);
 }
 
 template <class F>
 void case_analytic(const CaseWorld&, const F* in, Outputs<F>& out) {
     const Vec3<F> color{in[0], in[1], in[2]}, n = case_direction(in[5], in[6]), wo = case_direction(in[7], in[8]), wi = case_direction(in[9], in[10]);
     out.add(analytic_brdf(color, in[3], in[4], in[11], n, wo, wi));
-    out.add(analytic_brdf<requirement::kExactFresnel>(color, in[3], in[4], in[11], n, wo, wi, true));
+    out.add(analytic_brdf<requirement::kFresnel>(color, in[3], in[4], in[11], n, wo, wi, true));
 }
 
 template <class F>

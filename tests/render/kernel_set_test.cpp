@@ -64,7 +64,7 @@ TEST(KernelSet, HoldsWhatTheShotAsksForAndNothingElse) {
                   s.shot.render.fresnel = FresnelKind::exact;
                   s.material().metallic = 0;
               }).requirements,
-              kTransforms | kExactFresnel);
+              kTransforms | kFresnel);
     EXPECT_EQ(with([](Triangle& s) {
                   s.shot.render.fresnel = FresnelKind::exact;
                   s.material().metallic = 1;

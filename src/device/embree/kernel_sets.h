@@ -17,7 +17,7 @@ namespace kadr {
 namespace kernel_sets {
 using namespace kernels::requirement;
 
-inline constexpr unsigned kSmooth = kMirrors | kIor | kExactFresnel;
+inline constexpr unsigned kSmooth = kMirrors | kIor | kFresnel;
 inline constexpr std::array kPlainPath{0u, kEmitters, kTransforms, kTransforms | kEmitters, kSmooth | kTransforms | kEmitters};
 inline constexpr std::array kMapsPath{kMaps,
                                       kMaps | kEmitters,

@@ -62,7 +62,7 @@ unsigned MaterialTable::needs_of_lobe(const kernels::Material& m) const {
     using namespace kernels::requirement;
     const bool mirror = is_mirror(m, [this](int texture) { return *least_green_[static_cast<std::size_t>(texture)]; });
     const bool dielectric = !m.unlit && (m.metallic < 1 || m.metallic_roughness_texture.texture >= 0);
-    return (mirror ? kMirrors : 0) | (!m.unlit && m.dielectric_f0 != kernels::kDielectricF0 ? kIor : 0) | (exact_fresnel_ && dielectric ? kExactFresnel : 0);
+    return (mirror ? kMirrors : 0) | (!m.unlit && m.dielectric_f0 != kernels::kDielectricF0 ? kIor : 0) | (exact_fresnel_ && dielectric ? kFresnel : 0);
 }
 
 unsigned MaterialTable::requirements() const {

@@ -27,7 +27,7 @@ public:
 
     const kernels::Material* data() const { return materials_.empty() ? scene_.materials.data() : materials_.data(); }
     std::size_t count() const { return materials_.empty() ? scene_.materials.size() : materials_.size(); }
-    /// What is shown needs of requirement::kMaps, kSpecials, kMirrors, kIor and kExactFresnel.
+    /// What is shown needs of requirement::kMaps, kSpecials, kMirrors, kIor and kFresnel.
     unsigned requirements() const;
 
 private:
