@@ -139,9 +139,9 @@ TEST(ShotNeeds, KeepWhatCopiesAreStrewnOn) {
     file.id = "grass";
     file.first_node = 1;
     stage.scene.files.push_back(file);
-    const GeometryNeeds& geometry = stage.needs().scene.geometries[0];
-    EXPECT_TRUE(geometry.wanted);
-    EXPECT_FALSE(geometry.uv[0]);
+    const auto needs = stage.needs();
+    EXPECT_TRUE(needs.scene.geometries[0].wanted);
+    EXPECT_FALSE(needs.scene.geometries[0].uv[0]);
 }
 
 TEST(ShotNeeds, AreRefusedWithAllThatIsWrongWithTheNames) {
