@@ -17,7 +17,7 @@ double power_of_two_below(double x) { return std::exp2(std::floor(std::log2(x)))
 }  // namespace
 
 glm::dvec3 render_origin(const CameraState& camera) {
-    constexpr double kCellDistances = 128, kCellHalfHeights = 512;
+    constexpr double kCellDistances = 128, kCellHalfHeights = 128;
     const glm::dvec3 subject = camera.position + camera.rotation * glm::dvec3(0, 0, -camera.subject_distance);
     const double widest = std::min(kCellDistances * camera.subject_distance, kCellHalfHeights * half_height_m(camera));
     const double cell = power_of_two_below(std::clamp(widest, 1e-28, 1e32));

@@ -6,10 +6,10 @@
 namespace kadr {
 
 /// The point that everything of a frame is relative to: what the camera looks at, at the shutter's opening, snapped to a
-/// cubic grid. Its cell is the largest power of two up to 128 times the distance of that point, or in narrow views up to 512
+/// cubic grid. Its cell is the largest power of two up to 128 times the distance of that point, or in narrow views up to 128
 /// times half the height of what is seen there.
-/// Then a coordinate near what is seen is at most 64 distances and 256 half heights long, and a float holds it to
-/// 256 * 2^-24 = 1.5e-5 of half the height: below a hundredth of a pixel. A camera that looks at something within half a cell
+/// Then a coordinate near what is seen is at most 64 distances and 64 half heights long, and a float holds it to
+/// 64 * 2^-24 = 4e-6 of half the height: 0.002 pixels of 1080 lines. A camera that looks at something within half a cell
 /// of the world's origin gets the origin itself, and grids of different cells are nested, so that a static scene is hardly
 /// ever rebuilt.
 glm::dvec3 render_origin(const CameraState& camera);
