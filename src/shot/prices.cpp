@@ -8,8 +8,8 @@ namespace kadr {
 
 namespace {
 
-/// A choice that was built, measured and taken out again: on all samples it is slower to the same error than what is done
-/// instead. How, and where it would have helped: CHANGELOG.md.
+/// A choice that was built, measured and taken out again: no sample gets to the same error sooner than what is done instead
+/// by more than runs differ by. How that was measured, and where it would have helped: CHANGELOG.md.
 struct RefusedChoice {
     const char* what;
     const char* instead;
@@ -43,7 +43,7 @@ std::string prices_text() {
 }
 
 std::string refused_text() {
-    std::string text = "\n  measured in the same way, and not offered: slower to the same error on all samples\n\n" + heading("what", "instead of", "");
+    std::string text = "\n  built, measured, and not offered: no sample gets to the same error sooner by more than runs differ by\n\n" + heading("what", "instead of", "");
     for (const RefusedChoice& choice : kRefusedChoices) text += row_of(choice.what, choice.instead, choice, "");
     return text;
 }

@@ -184,7 +184,7 @@ TEST(RenderOrigin, StaysNearerToWhatNarrowViewsShow) {
     for (const double tan_half_height : {0.1, 1e-3, 1e-6}) {
         const double distance = 1e5, half_height = tan_half_height * distance;
         const glm::dvec3 off = subject - render_origin(camera_with(subject + glm::dvec3(0, 0, distance), distance, tan_half_height));
-        EXPECT_LE(largest(off), 256 * half_height);
+        EXPECT_LE(largest(off), 64 * half_height);
     }
 }
 

@@ -112,6 +112,7 @@ TEST_F(Loops, HashSeesWhatChangesPixelsAndNothingElse) {
                               "render: { seed: 1 }",
                               "render: { seed: { animated: true } }",
                               "render: { cull_backfaces: true }",
+                              "render: { fresnel: exact }",
                               "render: { motion_tolerance: 1 }",
                               "render: { motion_frames: 5 }",
                               "render: { motion_frames: { count: 5, mix: matrix } }",
